@@ -11,6 +11,7 @@
 #define RAYMILL_ASSERT_SIZE(type, bytes) static_assert(sizeof(type) == (bytes))
 namespace raymill {
 using uint = std::uint32_t;
+using ulong = std::uint64_t;
 #endif
 
 // ---------------------------------------------------------------------------------------------
@@ -24,6 +25,9 @@ enum {
     FILM_CHANNELS = 4,    // R, G, B, and coverage
     FILM_FRACTION_BITS = 32  // the film counts in units of 2^-32
 };
+
+// A single contribution to the film is cut at this radiance; sums may reach 2^31.
+#define FILM_LIMIT 16777216.0f
 
 #define NO_INDEX 0xffffffffu  // no primitive, texture, material or vertex normal
 
@@ -47,6 +51,7 @@ enum {
 #define MATERIAL_FRESNEL 8u        // fresnel = true
 #define MATERIAL_CHECKER 16u       // diffuse_checker
 #define MATERIAL_ABSORBING 32u     // absorption is not zero
+#define MATERIAL_ONE_SIDED 64u     // emits on the side of the geometric normal only
 
 // LightRecord::type; ambient and environment lights are folded into SceneConstants.
 #define LIGHT_POINT 0u
@@ -222,9 +227,18 @@ typedef struct {
     uint seed;
 } CameraRecord;
 
+/// What a wave tells the host, and what the film saw. 64-bit: added to by any number of work-items.
+typedef struct {
+    ulong children;          // rays that `secondary` was asked to push in this wave
+    ulong shadow_rays;       // shadow rays that `shade` has pushed since the start
+    ulong shadow_blocked;    // shadow rays that brought nothing
+    ulong saturated;         // film contributions cut to FILM_LIMIT, or sums that overflowed
+    ulong not_a_number;      // film contributions left out
+} Counters;
+
 /// What every shading stage needs to know of the scene beside its arrays.
 typedef struct {
-    float background[3];
+    float background[3];  // radiance of rays that miss; scales the environment's image if there is one
     uint triangle_count;
     float ambient[3];  // sum of the ambient lights
     uint sphere_count;
@@ -236,6 +250,8 @@ typedef struct {
     uint seed;
     float min_weight;
     uint any_filter;      // some material transmits: a filtered shadow ray may pass through
+    uint environment;     // index of the lat-long texture that rays see when they miss, or NO_INDEX
+    uint slot_count;      // light samples of a hit, all lights together
 } SceneConstants;
 
 RAYMILL_ASSERT_SIZE(Vertex, 32);
@@ -248,12 +264,13 @@ RAYMILL_ASSERT_SIZE(SphereBlock, 160);
 RAYMILL_ASSERT_SIZE(Ray, 52);
 RAYMILL_ASSERT_SIZE(Hit, 16);
 RAYMILL_ASSERT_SIZE(ShadowRay, 64);
-RAYMILL_ASSERT_SIZE(Material, 120);
+RAYMILL_ASSERT_SIZE(Material, 116);
 RAYMILL_ASSERT_SIZE(Texture, 12);
 RAYMILL_ASSERT_SIZE(LightRecord, 96);
 RAYMILL_ASSERT_SIZE(LightSlot, 8);
-RAYMILL_ASSERT_SIZE(CameraRecord, 96);
-RAYMILL_ASSERT_SIZE(SceneConstants, 64);
+RAYMILL_ASSERT_SIZE(CameraRecord, 92);
+RAYMILL_ASSERT_SIZE(Counters, 40);
+RAYMILL_ASSERT_SIZE(SceneConstants, 72);
 
 #ifndef __OPENCL_VERSION__
 }  // namespace raymill

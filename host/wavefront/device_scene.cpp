@@ -1,0 +1,54 @@
+#include "wavefront/device_scene.hpp"
+
+#include "wavefront/records.hpp"
+
+namespace raymill {
+
+namespace {
+
+std::vector<Texture> texture_records(const Scene& scene) {
+    std::vector<Texture> records;
+    std::size_t first = 0;
+    for (const TextureImage& image : scene.images) {
+        records.push_back({static_cast<uint>(first), image.width, image.height});
+        first += image.texels.size();
+    }
+    return records;
+}
+
+Buffer<float> upload_texels(const Device& device, const Scene& scene) {
+    std::size_t count = 0;
+    for (const TextureImage& image : scene.images) count += image.texels.size();
+    Buffer<float> texels(device, 3 * count);
+    std::size_t first = 0;
+    for (const TextureImage& image : scene.images) {
+        texels.write(device, {&image.texels.data()->x, 3 * image.texels.size()}, first);
+        first += 3 * image.texels.size();
+    }
+    return texels;
+}
+
+template <class T>
+Buffer<T> upload(const Device& device, const std::vector<T>& values) {
+    return Buffer<T>(device, std::span<const T>(values));
+}
+
+}  // namespace
+
+DeviceScene::DeviceScene(const Device& device, const Scene& scene, const Bvh& bvh)
+    : nodes(upload(device, bvh.nodes)),
+      triangle_blocks(upload(device, bvh.triangle_blocks)),
+      sphere_blocks(upload(device, bvh.sphere_blocks)),
+      vertices(upload(device, scene.vertices)),
+      triangles(upload(device, scene.triangles)),
+      spheres(upload(device, scene.spheres)),
+      planes(upload(device, scene.planes)),
+      materials(upload(device, material_records(scene))),
+      textures(upload(device, texture_records(scene))),
+      texels(upload_texels(device, scene)),
+      lights(upload(device, light_records(scene))),
+      light_slots(upload(device, raymill::light_slots(scene))),
+      camera(upload(device, std::vector{camera_record(scene)})),
+      constants(upload(device, std::vector{scene_constants(scene, bvh.nodes.size())})) {}
+
+}  // namespace raymill

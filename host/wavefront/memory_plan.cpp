@@ -1,0 +1,74 @@
+#include "wavefront/memory_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "wavefront/records.hpp"
+
+namespace raymill {
+
+namespace {
+
+constexpr std::uint64_t default_capacity = 1u << 16;
+constexpr std::uint64_t smallest_default = CHUNK;
+
+MemoryPlan plan_with(const Scene& scene, const Bvh& bvh, std::uint64_t capacity) {
+    const PixelWindow window = crop_window(scene.settings);
+    const std::uint64_t pixels = static_cast<std::uint64_t>(window.width) * static_cast<std::uint64_t>(window.height);
+    const std::uint64_t depth = spawns_secondary_rays(scene) ? static_cast<std::uint64_t>(scene.settings.depth) : 0;
+    const std::uint64_t chunks = (capacity + CHUNK - 1) / CHUNK;
+    const std::uint64_t slots = std::min<std::uint64_t>(light_slots(scene).size(), SHADOW_SAMPLES);
+
+    MemoryPlan plan;
+    plan.queue_capacity = static_cast<uint>(capacity);
+    plan.queues = static_cast<int>(depth) + 1;
+    plan.geometry = bvh.nodes.size() * sizeof(BvhNode) + bvh.triangle_blocks.size() * sizeof(TriangleBlock) +
+                    bvh.sphere_blocks.size() * sizeof(SphereBlock) + scene.vertices.size() * sizeof(Vertex) +
+                    scene.triangles.size() * sizeof(Triangle) + scene.spheres.size() * sizeof(Sphere) +
+                    scene.planes.size() * sizeof(Plane) + scene.materials.size() * sizeof(Material) +
+                    scene.lights.size() * sizeof(LightRecord);
+    for (const TextureImage& image : scene.images) plan.textures += image.texels.size() * 3 * sizeof(float);
+    plan.ray_queues = capacity * (1 + 2 * depth) * sizeof(Ray);
+    plan.hits = capacity * sizeof(Hit);
+    plan.shadow_queue = chunks * slots * (CHUNK * sizeof(ShadowRay) + sizeof(uint));
+    plan.film = pixels * FILM_CHANNELS * (sizeof(cl_long) + sizeof(float));
+    return plan;
+}
+
+/// The largest single buffer of the plan that grows with the capacity.
+std::uint64_t largest_queue(const MemoryPlan& plan) {
+    const std::uint64_t child_queue = 2 * std::uint64_t{plan.queue_capacity} * sizeof(Ray);
+    return std::max(child_queue, plan.shadow_queue);
+}
+
+}  // namespace
+
+MemoryPlan plan_memory(const Scene& scene, const Bvh& bvh, const MemoryRequest& request, const DeviceInfo& device) {
+    const std::uint64_t limit = request.limit > 0 ? request.limit : device.global_memory;
+    const auto fits = [&](const MemoryPlan& plan) {
+        return plan.total() <= limit && std::max(largest_queue(plan), plan.film) <= device.largest_buffer;
+    };
+    MemoryPlan plan = plan_with(scene, bvh, request.queue_capacity > 0 ? request.queue_capacity : default_capacity);
+    if (request.queue_capacity == 0)
+        for (std::uint64_t c = default_capacity; !fits(plan) && c > smallest_default; c /= 2)
+            plan = plan_with(scene, bvh, c / 2);
+    if (!fits(plan))
+        throw DeviceError(fmt::format(
+            "the frame needs {} (scene {}, film {}, queues of {} rays {}), more than the {} of {}: lower {}",
+            human_bytes(plan.total()), human_bytes(plan.geometry + plan.textures), human_bytes(plan.film),
+            plan.queue_capacity, human_bytes(plan.ray_queues + plan.hits + plan.shadow_queue), human_bytes(limit),
+            request.limit > 0 ? "--mem-limit" : device.name,
+            request.queue_capacity > 0 ? "--queue-capacity, --depth or --size" : "--depth or --size"));
+    return plan;
+}
+
+std::string human_bytes(std::uint64_t bytes) {
+    constexpr const char* units[] = {"B", "KiB", "MiB", "GiB", "TiB"};
+    double value = static_cast<double>(bytes);
+    int unit = 0;
+    for (; value >= 1024 && unit < 4; ++unit) value /= 1024;
+    return fmt::format(unit == 0 ? "{:.0f} {}" : "{:.1f} {}", value, units[unit]);
+}
+
+}  // namespace raymill

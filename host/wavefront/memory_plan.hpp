@@ -1,0 +1,38 @@
+// How much device memory a frame takes, known before the first ray.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "bvh/bvh.hpp"
+#include "device/device.hpp"
+#include "scene/scene.hpp"
+
+namespace raymill {
+
+/// Bytes of device memory by purpose.
+struct MemoryPlan {
+    uint queue_capacity = 0;  // rays of a batch
+    int queues = 0;           // depths that have a queue
+    std::uint64_t geometry = 0;
+    std::uint64_t textures = 0;
+    std::uint64_t ray_queues = 0;  // capacity * (1 + 2 * depth) rays
+    std::uint64_t hits = 0;
+    std::uint64_t shadow_queue = 0;
+    std::uint64_t film = 0;  // integer sums and resolved pixels
+
+    std::uint64_t total() const { return geometry + textures + ray_queues + hits + shadow_queue + film; }
+};
+
+struct MemoryRequest {
+    std::uint64_t queue_capacity = 0;  // rays; 0: as many as are useful and fit
+    std::uint64_t limit = 0;           // bytes; 0: what the device has
+};
+
+/// The plan for a frame of this scene. Throws DeviceError if it does not fit, with what to change.
+MemoryPlan plan_memory(const Scene& scene, const Bvh& bvh, const MemoryRequest& request, const DeviceInfo& device);
+
+/// "1.5 GiB".
+std::string human_bytes(std::uint64_t bytes);
+
+}  // namespace raymill

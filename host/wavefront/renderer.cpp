@@ -1,0 +1,171 @@
+#include "wavefront/renderer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "wavefront/records.hpp"
+
+namespace raymill {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// Consecutive ranges of at most SHADOW_SAMPLES light samples; one empty range without lights, for ambient and emission.
+std::vector<SlotRange> make_slot_ranges(uint slots) {
+    std::vector<SlotRange> ranges;
+    for (uint first = 0; first < slots; first += SHADOW_SAMPLES)
+        ranges.push_back({first, std::min<uint>(SHADOW_SAMPLES, slots - first)});
+    if (ranges.empty()) ranges.push_back({0, 0});
+    return ranges;
+}
+
+/// Collects the events of a frame's launches and adds up their times.
+class StageClock {
+  public:
+    void observe(const char* stage, uint items, const cl::Event& event) { pending_.push_back({stage, items, event}); }
+
+    /// Call when the launches so far have finished.
+    void drain() {
+        for (const Launch& launch : pending_) {
+            StageTime& time = entry(launch.stage);
+            ++time.launches;
+            time.items += launch.items;
+            time.seconds += 1e-9 * static_cast<double>(launch.event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
+                                                       launch.event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
+        }
+        pending_.clear();
+    }
+
+    std::vector<StageTime> times() const { return times_; }
+
+  private:
+    struct Launch {
+        const char* stage;
+        uint items;
+        cl::Event event;
+    };
+    StageTime& entry(const char* stage) {
+        for (StageTime& time : times_)
+            if (time.stage == stage) return time;
+        return times_.emplace_back(StageTime{stage, 0, 0, 0});
+    }
+    std::vector<Launch> pending_;
+    std::vector<StageTime> times_;
+};
+
+std::uint64_t camera_samples(const Scene& scene) {
+    const PixelWindow window = crop_window(scene.settings);
+    return static_cast<std::uint64_t>(window.width) * static_cast<std::uint64_t>(window.height) *
+           static_cast<std::uint64_t>(scene.settings.spp);
+}
+
+std::size_t pixel_channels(const Scene& scene) {
+    const PixelWindow window = crop_window(scene.settings);
+    return static_cast<std::size_t>(window.width) * static_cast<std::size_t>(window.height) * FILM_CHANNELS;
+}
+
+}  // namespace
+
+std::uint64_t Frame::hash() const {
+    std::uint64_t h = 0xcbf29ce484222325u;
+    for (const cl_long sum : sums)
+        for (int byte = 0; byte < 8; ++byte) h = (h ^ (static_cast<std::uint64_t>(sum) >> (8 * byte) & 0xff)) * 0x100000001b3u;
+    return h;
+}
+
+Renderer::Renderer(const Device& device, const Scene& scene, const Bvh& bvh, const RenderOptions& options)
+    : device_(device),
+      scene_(scene),
+      plan_(plan_memory(scene, bvh, options.memory, device.info)),
+      stages_(device, options.work_group, options.kernel_dir),
+      device_scene_(device, scene, bvh),
+      max_depth_(plan_.queues - 1),
+      waves_(plan_.queue_capacity, max_depth_),
+      slot_ranges_(make_slot_ranges(static_cast<uint>(device_scene_.light_slots.size()))) {
+    try {
+        for (int depth = 0; depth <= max_depth_; ++depth) queues_.emplace_back(device, waves_.queue_size(depth));
+        const std::size_t segments = std::size_t{Stages::chunks(plan_.queue_capacity)} * slot_ranges_.front().count;
+        hits_ = Buffer<Hit>(device, plan_.queue_capacity);
+        shadow_queue_ = {{device, segments * CHUNK}, {device, segments}};
+        film_ = {{device, pixel_channels(scene)}, {device, 1}};
+    } catch (const cl::Error& error) {
+        throw DeviceError(error);
+    }
+}
+
+Frame Renderer::render(const Progress& progress, bool time_stages) try {
+    const Clock::time_point start = Clock::now();
+    StageClock clock;
+    stages_.observe({});
+    if (time_stages)
+        stages_.observe([&](const char* stage, uint items, const cl::Event& e) { clock.observe(stage, items, e); });
+    film_.sums.clear(device_);
+    film_.counters.clear(device_);
+    counts_ = {};
+    Frame frame;
+
+    const std::uint64_t samples = camera_samples(scene_);
+    bool going_on = true;
+    for (;;) {
+        std::optional<Batch> batch = waves_.next();
+        if (!batch) {
+            if (!going_on || counts_.camera == samples) break;
+            const uint count = static_cast<uint>(std::min<std::uint64_t>(plan_.queue_capacity, samples - counts_.camera));
+            stages_.generate(device_scene_, counts_.camera, count, queues_[0]);
+            counts_.camera += count;
+            waves_.push(0, count);
+            batch = waves_.next();
+        }
+        trace(*batch);
+        ++frame.waves;
+        if (time_stages) clock.drain();
+        if (progress) going_on = progress(static_cast<double>(counts_.camera) / static_cast<double>(samples)) && going_on;
+    }
+
+    Buffer<float> pixels(device_, pixel_channels(scene_));
+    stages_.resolve(film_, static_cast<uint>(scene_.settings.spp), pixels);
+    frame.rgba = pixels.read(device_);
+    frame.sums = film_.sums.read(device_);
+    if (time_stages) clock.drain();
+    const Counters counters = film_.counters.read_one(device_);
+    counts_.shadow = counters.shadow_rays;
+    frame.rays = counts_;
+    frame.shadow_blocked = counters.shadow_blocked;
+    frame.saturated = counters.saturated;
+    frame.not_a_number = counters.not_a_number;
+    frame.finished = samples > 0 ? static_cast<double>(counts_.camera) / static_cast<double>(samples) : 1;
+    frame.stages = clock.times();
+    frame.seconds = seconds_since(start);
+    stages_.observe({});
+    return frame;
+} catch (const cl::Error& error) {
+    throw DeviceError(error);
+}
+
+void Renderer::trace(const Batch& batch) {
+    const QueueRange<Ray> rays{queues_[static_cast<std::size_t>(batch.depth)], batch.first, batch.count};
+    stages_.intersect(device_scene_, rays, hits_, film_);
+    for (const SlotRange& slots : slot_ranges_) {
+        stages_.shade(device_scene_, rays, hits_, slots, shadow_queue_, film_);
+        stages_.shadow(device_scene_, shadow_queue_, Stages::chunks(batch.count) * slots.count, film_);
+    }
+    if (batch.depth == max_depth_) {
+        device_.queue.finish();
+        return;
+    }
+    const std::size_t next = static_cast<std::size_t>(batch.depth) + 1;
+    device_.queue.enqueueFillBuffer(film_.counters.memory(), cl_ulong{0}, offsetof(Counters, children), sizeof(cl_ulong));
+    stages_.secondary(device_scene_, rays, hits_, queues_[next], film_);
+    cl_ulong children = 0;
+    device_.queue.enqueueReadBuffer(film_.counters.memory(), CL_TRUE, offsetof(Counters, children), sizeof children,
+                                    &children);
+    waves_.push(batch.depth + 1, children);
+    counts_.secondary += children;
+}
+
+}  // namespace raymill

@@ -1,0 +1,85 @@
+// The wavefront loop: camera samples in, integer film out.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "wavefront/memory_plan.hpp"
+#include "wavefront/stages.hpp"
+#include "wavefront/waves.hpp"
+
+namespace raymill {
+
+struct RenderOptions {
+    MemoryRequest memory;
+    std::size_t work_group = 0;  // items; 0: what suits each stage
+    std::string kernel_dir;      // empty: the embedded kernels
+};
+
+struct RayCounts {
+    std::uint64_t camera = 0;
+    std::uint64_t secondary = 0;
+    std::uint64_t shadow = 0;
+    std::uint64_t total() const { return camera + secondary + shadow; }
+};
+
+/// Time and work of one kernel, summed over its launches.
+struct StageTime {
+    std::string stage;
+    std::uint64_t launches = 0;
+    std::uint64_t items = 0;
+    double seconds = 0;
+};
+
+struct Frame {
+    std::vector<float> rgba;         // of the crop window, row by row from the top
+    std::vector<cl_long> sums;       // the film's integers, FILM_CHANNELS a pixel
+    RayCounts rays;
+    std::uint64_t shadow_blocked = 0;
+    std::uint64_t saturated = 0;     // film contributions that were cut
+    std::uint64_t not_a_number = 0;  // film contributions that were left out
+    std::uint64_t waves = 0;
+    double seconds = 0;              // of the loop
+    double finished = 1;             // share of the camera samples; less than 1 when interrupted
+    std::vector<StageTime> stages;   // when timed
+
+    /// FNV-1a of the film's integers.
+    std::uint64_t hash() const;
+};
+
+/// Called between waves with the share of camera samples done; returns false to stop: rays already generated are
+/// finished, no more are.
+using Progress = std::function<bool(double share)>;
+
+class Renderer {
+  public:
+    /// Builds the kernels and uploads the scene. The references must outlive the renderer. Throws DeviceError.
+    Renderer(const Device& device, const Scene& scene, const Bvh& bvh, const RenderOptions& options);
+
+    const MemoryPlan& memory() const { return plan_; }
+
+    /// Renders one frame. time_stages: fills Frame::stages. Throws DeviceError, QueueOverflow.
+    Frame render(const Progress& progress = {}, bool time_stages = false);
+
+  private:
+    void trace(const Batch& batch);
+
+    const Device& device_;
+    const Scene& scene_;
+    MemoryPlan plan_;
+    Stages stages_;
+    DeviceScene device_scene_;
+    int max_depth_;
+    Waves waves_;
+    std::vector<Buffer<Ray>> queues_;
+    Buffer<Hit> hits_;
+    ShadowQueue shadow_queue_;
+    Film film_;
+    std::vector<SlotRange> slot_ranges_;
+    RayCounts counts_;
+};
+
+}  // namespace raymill

@@ -1,0 +1,98 @@
+#include "wavefront/stages.hpp"
+
+#include <fmt/format.h>
+
+#include "device/program.hpp"
+
+namespace raymill {
+
+namespace {
+
+const std::vector<std::string> kernel_files = {"generate.cl", "intersect.cl", "shade.cl",
+                                               "shadow.cl",   "secondary.cl", "resolve.cl"};
+
+// Kernels of one item a work-item want groups that fill the vector units; those that loop over a chunk want none
+// (PoCL replicates their stacks for each work-item of a group).
+constexpr std::size_t item_group = 64;
+constexpr std::size_t chunk_group = 1;
+
+template <class T>
+const cl::Buffer& argument(const Buffer<T>& buffer) {
+    return buffer.memory();
+}
+uint argument(uint value) { return value; }
+cl_ulong argument(std::uint64_t value) { return value; }
+
+}  // namespace
+
+Stages::Stages(const Device& device, std::size_t work_group, const std::string& kernel_dir) : device_(device) {
+    if (work_group > device.info.largest_work_group)
+        throw DeviceError(fmt::format("device {} has work-groups of at most {} items, not {}: lower --work-group",
+                                      device.info.name, device.info.largest_work_group, work_group));
+    const cl::Program program = build_program(device, kernel_files, kernel_dir);
+    const auto stage = [&](const char* name, std::size_t group) {
+        return Stage{name, make_kernel(program, name), work_group > 0 ? work_group : group};
+    };
+    generate_ = stage("generate", item_group);
+    intersect_ = stage("intersect", chunk_group);
+    shade_ = stage("shade", chunk_group);
+    shadow_ = stage("shadow", chunk_group);
+    secondary_ = stage("secondary", chunk_group);
+    resolve_ = stage("resolve", item_group);
+}
+
+template <class... Arguments>
+void Stages::launch(Stage& stage, uint work_items, uint items, const Arguments&... arguments) {
+    if (work_items == 0) return;
+    try {
+        cl_uint index = 0;
+        (stage.kernel.setArg(index++, argument(arguments)), ...);
+        const std::size_t groups = (work_items + stage.local_size - 1) / stage.local_size;
+        cl::Event event;
+        device_.queue.enqueueNDRangeKernel(stage.kernel, cl::NullRange, cl::NDRange(groups * stage.local_size),
+                                           cl::NDRange(stage.local_size), nullptr, observer_ ? &event : nullptr);
+        if (observer_) observer_(stage.name, items, event);
+    } catch (const cl::Error& error) {
+        throw DeviceError(fmt::format("kernel {}: {} failed: {} ({})", stage.name, error.what(),
+                                      status_name(error.err()), error.err()));
+    }
+}
+
+void Stages::generate(const DeviceScene& scene, std::uint64_t first_sample, uint count, Buffer<Ray>& rays) {
+    launch(generate_, count, count, first_sample, count, scene.camera, rays);
+}
+
+void Stages::intersect(const DeviceScene& scene, QueueRange<Ray> rays, Buffer<Hit>& hits, Film& film) {
+    launch(intersect_, chunks(rays.count), rays.count, rays.items, rays.first, rays.count, scene.nodes,
+           scene.triangle_blocks, scene.sphere_blocks, scene.planes, scene.textures, scene.texels, scene.constants,
+           hits, film.sums, film.counters);
+}
+
+void Stages::shade(const DeviceScene& scene, QueueRange<Ray> rays, const Buffer<Hit>& hits, SlotRange slots,
+                   ShadowQueue& shadow_rays, Film& film) {
+    launch(shade_, chunks(rays.count), rays.count, rays.items, rays.first, rays.count, hits, slots.first, slots.count,
+           scene.light_slots, scene.lights, scene.vertices, scene.triangles, scene.spheres, scene.planes,
+           scene.materials, scene.textures, scene.texels, scene.constants, shadow_rays.rays, shadow_rays.counts,
+           film.sums, film.counters);
+}
+
+void Stages::shadow(const DeviceScene& scene, const ShadowQueue& shadow_rays, uint segments, Film& film) {
+    launch(shadow_, segments, segments * CHUNK, shadow_rays.rays, shadow_rays.counts, segments, scene.nodes,
+           scene.triangle_blocks, scene.sphere_blocks, scene.planes, scene.triangles, scene.spheres, scene.materials,
+           scene.constants, film.sums, film.counters);
+}
+
+void Stages::secondary(const DeviceScene& scene, QueueRange<Ray> rays, const Buffer<Hit>& hits, Buffer<Ray>& children,
+                       Film& film) {
+    const uint capacity = static_cast<uint>(children.size());
+    launch(secondary_, chunks(rays.count), rays.count, rays.items, rays.first, rays.count, hits, scene.vertices,
+           scene.triangles, scene.spheres, scene.planes, scene.materials, scene.textures, scene.texels,
+           scene.constants, children, capacity, film.counters);
+}
+
+void Stages::resolve(const Film& film, uint spp, Buffer<float>& pixels) {
+    const uint count = static_cast<uint>(pixels.size());
+    launch(resolve_, count, count, film.sums, count, spp, pixels);
+}
+
+}  // namespace raymill

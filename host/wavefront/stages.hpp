@@ -1,0 +1,75 @@
+// The stages: one typed method a kernel, named like it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "wavefront/device_scene.hpp"
+
+namespace raymill {
+
+/// `count` items of a queue from `first` on.
+template <class T>
+struct QueueRange {
+    const Buffer<T>& items;
+    uint first = 0;
+    uint count = 0;
+};
+
+/// Segments of CHUNK shadow rays: one a chunk of hits and light sample.
+struct ShadowQueue {
+    Buffer<ShadowRay> rays;
+    Buffer<uint> counts;
+};
+
+/// Integer sums of every pixel of the rendered window, and what went wrong while adding.
+struct Film {
+    Buffer<cl_long> sums;
+    Buffer<Counters> counters;
+};
+
+/// Light samples [first, first + count) of the scene's list.
+struct SlotRange {
+    uint first = 0;
+    uint count = 0;
+};
+
+/// Called after each launch with the stage's name and its event, where launches are to be timed.
+using LaunchObserver = std::function<void(const char* stage, uint items, const cl::Event& event)>;
+
+class Stages {
+  public:
+    /// work_group: items of a work-group, 0 for what suits each stage. kernel_dir: see kernel_source().
+    Stages(const Device& device, std::size_t work_group, const std::string& kernel_dir);
+
+    void observe(LaunchObserver observer) { observer_ = std::move(observer); }
+
+    void generate(const DeviceScene& scene, std::uint64_t first_sample, uint count, Buffer<Ray>& rays);
+    void intersect(const DeviceScene& scene, QueueRange<Ray> rays, Buffer<Hit>& hits, Film& film);
+    void shade(const DeviceScene& scene, QueueRange<Ray> rays, const Buffer<Hit>& hits, SlotRange slots,
+               ShadowQueue& shadow_rays, Film& film);
+    void shadow(const DeviceScene& scene, const ShadowQueue& shadow_rays, uint segments, Film& film);
+    /// Counts its children in film.counters.children, from the value it finds there.
+    void secondary(const DeviceScene& scene, QueueRange<Ray> rays, const Buffer<Hit>& hits, Buffer<Ray>& children,
+                   Film& film);
+    void resolve(const Film& film, uint spp, Buffer<float>& pixels);
+
+    static uint chunks(uint items) { return (items + CHUNK - 1) / CHUNK; }
+
+  private:
+    struct Stage {
+        const char* name;
+        cl::Kernel kernel;
+        std::size_t local_size;
+    };
+    template <class... Arguments>
+    void launch(Stage& stage, uint work_items, uint items, const Arguments&... arguments);
+
+    const Device& device_;
+    LaunchObserver observer_;
+    Stage generate_, intersect_, shade_, shadow_, secondary_, resolve_;
+};
+
+}  // namespace raymill

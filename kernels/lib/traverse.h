@@ -1,0 +1,205 @@
+// The closest hit and the light that passes: one ray through the eight-wide hierarchy, and then the infinite planes.
+// Sources: node layout and octant order, Wald et al., "Getting Rid of Packets", 2008; conservative slabs, Ize, "Robust BVH Ray
+// Traversal", JCGT 2013.
+#ifndef RAYMILL_TRAVERSE_H
+#define RAYMILL_TRAVERSE_H
+
+#include "lib/sphere.h"
+
+#define STACK_SIZE 256  // seven entries a level, 32 levels, and the root (host/bvh bounds the depth)
+
+/// What rays can hit.
+typedef struct {
+    global const BvhNode* nodes;
+    global const TriangleBlock* triangles;
+    global const SphereBlock* spheres;
+    global const Plane* planes;
+    uint node_count;
+    uint plane_count;
+    uint first_plane;  // primitive id
+} Geometry;
+
+static inline Geometry scene_geometry(global const BvhNode* nodes, global const TriangleBlock* triangles,
+                                      global const SphereBlock* spheres, global const Plane* planes,
+                                      constant SceneConstants* constants) {
+    Geometry g = {nodes,  triangles, spheres, planes, constants->node_count, constants->plane_count,
+                  constants->triangle_count + constants->sphere_count};
+    return g;
+}
+
+/// The ray in slab form: plane * inverse + near or far gives the distance, rounded outward by the error of its offset.
+typedef struct {
+    float3 inverse;
+    float3 near, far;
+    uint sign[3];  // 1 where the direction is negative: the upper plane comes first
+} SlabFrame;
+
+static inline SlabFrame slab_frame(float3 origin, float3 direction) {
+    // Directions are unit, so 1e-18 is as good as parallel, and keeps infinity times zero out.
+    const float3 d = select(direction, copysign((float3)(1e-18f), direction), fabs(direction) < 1e-18f);
+    SlabFrame f;
+    f.inverse = 1.0f / d;
+    const float3 offset = -origin * f.inverse;
+    // Both the product above and the origin's own grid: two roundings, and one to spare.
+    const float3 error = fabs(offset) * (3.0f * ROUNDING);
+    f.near = offset - error;
+    f.far = offset + error;
+    f.sign[0] = d.x < 0.0f;
+    f.sign[1] = d.y < 0.0f;
+    f.sign[2] = d.z < 0.0f;
+    return f;
+}
+
+/// Children whose boxes the ray meets in [0, t_max], and where it enters them.
+static inline uint intersect_children(global const BvhNode* node, SlabFrame f, float t_max, float8* entry) {
+    global const float* planes = &node->bounds[0][0][0];
+    const float8 near_x = fma(vload8(f.sign[0] * 3, planes), (float8)(f.inverse.x), (float8)(f.near.x));
+    const float8 near_y = fma(vload8(f.sign[1] * 3 + 1, planes), (float8)(f.inverse.y), (float8)(f.near.y));
+    const float8 near_z = fma(vload8(f.sign[2] * 3 + 2, planes), (float8)(f.inverse.z), (float8)(f.near.z));
+    const float8 far_x = fma(vload8(3 - f.sign[0] * 3, planes), (float8)(f.inverse.x), (float8)(f.far.x));
+    const float8 far_y = fma(vload8(4 - f.sign[1] * 3, planes), (float8)(f.inverse.y), (float8)(f.far.y));
+    const float8 far_z = fma(vload8(5 - f.sign[2] * 3, planes), (float8)(f.inverse.z), (float8)(f.far.z));
+    const float8 enter = max8(max8(near_x, near_y), max8(near_z, (float8)(0.0f)));
+    const float8 leave = min8(min8(far_x, far_y), min8(far_z, (float8)(t_max)));
+    *entry = enter;
+    return lane_mask(enter <= leave * (1.0f + 8.0f * ROUNDING));
+}
+
+/// Whether a hit comes later along the ray than (t, primitive) in the one order that everybody uses: distance, then id.
+static inline bool is_later(float t, uint primitive, float than_t, uint than_primitive) {
+    return t > than_t || (t == than_t && primitive > than_primitive);
+}
+
+/// A ray, and the hits to look for: later than `after` and not later than `best`, which is replaced.
+typedef struct {
+    float3 origin;
+    float3 direction;
+    Hit after;
+    Hit best;
+} Query;
+
+static inline bool accepts(const Query* query, float t, uint primitive) {
+    return is_later(t, primitive, query->after.t, query->after.primitive) &&
+           is_later(query->best.t, query->best.primitive, t, primitive);
+}
+
+static inline void visit_triangles(global const TriangleBlock* block, TriangleFrame frame, Query* query) {
+    float8 t8, u8, v8;
+    uint mask = intersect_triangles(block, frame, query->best.t, &t8, &u8, &v8);
+    if (mask == 0) return;
+    float t[BVH_WIDTH], u[BVH_WIDTH], v[BVH_WIDTH];
+    vstore8(t8, 0, t);
+    vstore8(u8, 0, u);
+    vstore8(v8, 0, v);
+    for (; mask != 0; mask &= mask - 1) {
+        const uint lane = lowest_bit(mask);
+        const uint primitive = block->primitive[lane];
+        if (!accepts(query, t[lane], primitive)) continue;
+        query->best.t = t[lane];
+        query->best.u = u[lane];
+        query->best.v = v[lane];
+        query->best.primitive = primitive;
+    }
+}
+
+static inline void visit_spheres(global const SphereBlock* block, Query* query) {
+    // A sphere may be met twice: where the first crossing is `after`, look beyond it, strictly since the id is the same.
+    float8 t8;
+    uint mask = intersect_spheres(block, query->origin, query->direction, query->after.t, query->best.t, &t8);
+    if (mask == 0) return;
+    float t[BVH_WIDTH];
+    vstore8(t8, 0, t);
+    for (; mask != 0; mask &= mask - 1) {
+        const uint lane = lowest_bit(mask);
+        const uint primitive = block->primitive[lane];
+        if (!accepts(query, t[lane], primitive)) continue;
+        query->best.t = t[lane];
+        query->best.u = 0.0f;
+        query->best.v = 0.0f;
+        query->best.primitive = primitive;
+    }
+}
+
+static inline void visit_planes(const Geometry* geometry, Query* query) {
+    for (uint i = 0; i < geometry->plane_count; ++i) {
+        global const Plane* plane = geometry->planes + i;
+        const float3 normal = load3(plane->normal);
+        const float height = dot3(normal, query->origin - load3(plane->point));
+        const float t = -height / dot3(normal, query->direction);
+        if (!(t > 0.0f) || !accepts(query, t, geometry->first_plane + i)) continue;
+        query->best.t = t;
+        query->best.u = 0.0f;
+        query->best.v = 0.0f;
+        query->best.primitive = geometry->first_plane + i;
+    }
+}
+
+/// Pushes the children in `mask` so that the nearest is on top. An entry is the distance's bits above the child word:
+/// distances are not negative, so integers sort like floats.
+static inline uint push_children(global const BvhNode* node, uint mask, float8 entry8, ulong* stack, uint top) {
+    float entry[BVH_WIDTH];
+    vstore8(entry8, 0, entry);
+    const uint bottom = top;
+    for (; mask != 0; mask &= mask - 1) {
+        const uint lane = lowest_bit(mask);
+        const ulong item = (ulong)as_uint(entry[lane]) << 32 | node->child[lane];
+        uint place = top++;
+        for (; place > bottom && stack[place - 1] < item; --place) stack[place] = stack[place - 1];
+        stack[place] = item;
+    }
+    return top;
+}
+
+/// Finds the first hit in the query's range; best stays as it is if there is none.
+/// With any_hit the first one met will do, whichever it is.
+static void traverse(const Geometry* geometry, Query* query, bool any_hit) {
+    const uint none = query->best.primitive;
+    visit_planes(geometry, query);
+    if (geometry->node_count == 0) return;
+    const SlabFrame slabs = slab_frame(query->origin, query->direction);
+    const TriangleFrame frame = triangle_frame(query->origin, query->direction);
+    ulong stack[STACK_SIZE];
+    stack[0] = 0;  // the root at distance 0
+    uint top = 1;
+    while (top > 0) {
+        if (any_hit && query->best.primitive != none) return;
+        const ulong item = stack[--top];
+        if (as_float((uint)(item >> 32)) > query->best.t) continue;
+        const uint child = (uint)item;
+        if (child & CHILD_LEAF) {
+            const uint first = child & CHILD_FIRST_MASK;
+            const uint last = first + (child >> CHILD_BLOCKS_SHIFT & CHILD_BLOCKS_MASK);
+            for (uint block = first; block <= last; ++block) {
+                if (child & CHILD_SPHERES)
+                    visit_spheres(geometry->spheres + block, query);
+                else
+                    visit_triangles(geometry->triangles + block, frame, query);
+            }
+        } else {
+            float8 entry;
+            const uint mask = intersect_children(geometry->nodes + child, slabs, query->best.t, &entry);
+            top = push_children(geometry->nodes + child, mask, entry, stack, top);
+        }
+    }
+}
+
+/// The closest hit in front of the ray later than `after`; primitive is NO_INDEX if there is none.
+static inline Hit closest_hit_after(const Geometry* geometry, float3 origin, float3 direction, Hit after, float t_max) {
+    Query query = {origin, direction, after, {t_max, 0.0f, 0.0f, NO_INDEX}};
+    traverse(geometry, &query, false);
+    return query.best;
+}
+
+static inline Hit closest_hit(const Geometry* geometry, float3 origin, float3 direction) {
+    const Hit start = {0.0f, 0.0f, 0.0f, NO_INDEX};
+    return closest_hit_after(geometry, origin, direction, start, INFINITY);
+}
+
+/// Whether anything lies between the origin and t_max.
+static inline bool is_blocked(const Geometry* geometry, float3 origin, float3 direction, float t_max) {
+    Query query = {origin, direction, {0.0f, 0.0f, 0.0f, NO_INDEX}, {t_max, 0.0f, 0.0f, NO_INDEX}};
+    traverse(geometry, &query, true);
+    return query.best.primitive != NO_INDEX;
+}
+
+#endif

@@ -1,0 +1,130 @@
+// One ray against eight triangles: watertight, and each crossing of a closed mesh counted exactly once.
+// Source: Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013; the bound on t follows Pharr, Jakob,
+// Humphreys, Physically Based Rendering 4e, section 6.8.7.
+// Deviations: where an edge function rounds to zero its exact sign decides (Woop falls back to double), and a ray exactly
+// on an edge belongs to one of its two triangles by the top-left rule of rasterisers.
+#ifndef RAYMILL_TRIANGLE_H
+#define RAYMILL_TRIANGLE_H
+
+#include "lib/math.h"
+
+/// The ray's frame: axis z is the largest of the direction's, x and y keep the handedness; shear maps the ray onto z.
+typedef struct {
+    uint x, y, z;
+    float origin_x, origin_y, origin_z;
+    float shear_x, shear_y, shear_z;
+} TriangleFrame;
+
+static inline float component(float3 v, uint axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
+
+static inline TriangleFrame triangle_frame(float3 origin, float3 direction) {
+    const float3 a = fabs(direction);
+    TriangleFrame f;
+    f.z = a.x > a.y ? (a.x > a.z ? 0u : 2u) : (a.y > a.z ? 1u : 2u);
+    f.x = f.z == 2 ? 0u : f.z + 1;
+    f.y = f.x == 2 ? 0u : f.x + 1;
+    if (component(direction, f.z) < 0.0f) {
+        const uint swap = f.x;
+        f.x = f.y;
+        f.y = swap;
+    }
+    const float along = component(direction, f.z);
+    f.origin_x = component(origin, f.x);
+    f.origin_y = component(origin, f.y);
+    f.origin_z = component(origin, f.z);
+    f.shear_x = component(direction, f.x) / along;
+    f.shear_y = component(direction, f.y) / along;
+    f.shear_z = 1.0f / along;
+    return f;
+}
+
+/// One bit a lane of a comparison's result.
+static inline uint lane_mask(int8 comparison) {
+    // Gathers the eight lowest bits of eight bytes into one byte.
+    const ulong bytes = as_ulong(convert_char8(comparison)) & 0x0101010101010101ul;
+    return (uint)((bytes * 0x0102040810204080ul) >> 56);
+}
+
+/// Sign of ax * by - ay * bx without rounding: -1, 0 or 1 (no underflow assumed).
+static inline int cross_sign(float ax, float ay, float bx, float by) {
+    const float p = ax * by, q = ay * bx;
+    if (p != q) return p > q ? 1 : -1;
+    const float p_rest = fma(ax, by, -p), q_rest = fma(ay, bx, -q);
+    return p_rest > q_rest ? 1 : p_rest < q_rest ? -1 : 0;
+}
+
+/// Whether a ray exactly on the directed edge from (ax, ay) to (bx, by) of a triangle with this facing is its own.
+static inline bool owns_edge(float ax, float ay, float bx, float by, int facing) {
+    const float dy = by - ay, dx = bx - ax;
+    return facing > 0 ? (dy > 0.0f || (dy == 0.0f && dx > 0.0f)) : (dy < 0.0f || (dy == 0.0f && dx < 0.0f));
+}
+
+/// Whether the origin lies in the triangle a, b, c of the plane, decided exactly; a point on an edge that two triangles
+/// share lies in one of them.
+static bool inside_exactly(float ax, float ay, float bx, float by, float cx, float cy) {
+    const int u = cross_sign(cx, cy, bx, by);
+    const int v = cross_sign(ax, ay, cx, cy);
+    const int w = cross_sign(bx, by, ax, ay);
+    const bool negative = u < 0 || v < 0 || w < 0, positive = u > 0 || v > 0 || w > 0;
+    if (negative == positive) return false;  // outside, or all zero: seen edge on
+    const int facing = positive ? 1 : -1;
+    return (u != 0 || owns_edge(bx, by, cx, cy, facing)) && (v != 0 || owns_edge(cx, cy, ax, ay, facing)) &&
+           (w != 0 || owns_edge(ax, ay, bx, by, facing));
+}
+
+/// Hits of the block's triangles: distance and barycentric weights of vertices 1 and 2 by lane. The mask says which lanes
+/// hit at a distance in (0, t_max] that is certainly positive.
+static inline uint intersect_triangles(global const TriangleBlock* block, TriangleFrame f, float t_max, float8* t,
+                                       float8* u, float8* v) {
+    global const float* p = &block->position[0][0][0];
+    const float8 az = vload8(f.z, p) - f.origin_z;
+    const float8 bz = vload8(3 + f.z, p) - f.origin_z;
+    const float8 cz = vload8(6 + f.z, p) - f.origin_z;
+    const float8 ax = fma((float8)(-f.shear_x), az, vload8(f.x, p) - f.origin_x);
+    const float8 ay = fma((float8)(-f.shear_y), az, vload8(f.y, p) - f.origin_y);
+    const float8 bx = fma((float8)(-f.shear_x), bz, vload8(3 + f.x, p) - f.origin_x);
+    const float8 by = fma((float8)(-f.shear_y), bz, vload8(3 + f.y, p) - f.origin_y);
+    const float8 cx = fma((float8)(-f.shear_x), cz, vload8(6 + f.x, p) - f.origin_x);
+    const float8 cy = fma((float8)(-f.shear_y), cz, vload8(6 + f.y, p) - f.origin_y);
+
+    // Twice the areas opposite each vertex: products rounded alike on both sides of an edge, so the signs agree there.
+    const float8 ua = cx * by - cy * bx;
+    const float8 va = ax * cy - ay * cx;
+    const float8 wa = bx * ay - by * ax;
+    const float8 smallest = min8(min8(ua, va), wa), largest = max8(max8(ua, va), wa);
+    uint mask = lane_mask(((smallest >= 0.0f) & (largest > 0.0f)) | ((largest <= 0.0f) & (smallest < 0.0f)));
+    if (mask == 0) return 0;
+
+    uint on_edge = mask & lane_mask((ua == 0.0f) | (va == 0.0f) | (wa == 0.0f));
+    if (on_edge != 0) {
+        float a[2][BVH_WIDTH], b[2][BVH_WIDTH], c[2][BVH_WIDTH];
+        vstore8(ax, 0, a[0]);
+        vstore8(ay, 0, a[1]);
+        vstore8(bx, 0, b[0]);
+        vstore8(by, 0, b[1]);
+        vstore8(cx, 0, c[0]);
+        vstore8(cy, 0, c[1]);
+        for (uint lane = 0; lane < BVH_WIDTH; ++lane)
+            if ((on_edge >> lane & 1u) &&
+                !inside_exactly(a[0][lane], a[1][lane], b[0][lane], b[1][lane], c[0][lane], c[1][lane]))
+                mask &= ~(1u << lane);
+    }
+
+    const float8 det = ua + va + wa;
+    const float8 inverse = 1.0f / det;
+    const float8 distance = fma(ua, az, fma(va, bz, wa * cz)) * f.shear_z * inverse;
+
+    // A bound on the rounding error of the distance: a hit nearer than this may as well lie behind the origin.
+    const float8 x = max8(max8(fabs(ax), fabs(bx)), fabs(cx));
+    const float8 y = max8(max8(fabs(ay), fabs(by)), fabs(cy));
+    const float8 z = max8(max8(fabs(az), fabs(bz)), fabs(cz));
+    const float8 e = max8(max8(fabs(ua), fabs(va)), fabs(wa));
+    const float8 delta_e = 2.0f * ROUNDING * (2.0f * x * y + 5.0f * ((y + z) * x + (x + z) * y));
+    const float8 delta = 3.0f * (6.0f * ROUNDING * e + delta_e) * z * fabs(f.shear_z) * fabs(inverse);
+    *t = distance;
+    *u = va * inverse;
+    *v = wa * inverse;
+    return mask & lane_mask((det != 0.0f) & (distance > delta) & (distance <= t_max));
+}
+
+#endif

@@ -1,0 +1,43 @@
+// Local illumination: ambient and emission, and one shadow ray for each light sample that would add something.
+// Reads:  rays [first_ray, first_ray + count), hits [0, count), light samples [first_slot, first_slot + slot_count).
+// Writes: film (ambient and emission, with slot 0); shadow_rays and shadow_counts, a segment of CHUNK rays for each chunk
+//         and light sample, so that a segment's rays go to one light in the order of their pixels.
+// Next:   shadow.
+
+#include "lib/film.h"
+#include "lib/shading.h"
+
+/// One work-item a chunk of CHUNK hits; segment = chunk * slot_count + slot.
+kernel void shade(global const Ray* rays, uint first_ray, uint count, global const Hit* hits, uint first_slot,
+                  uint slot_count, global const LightSlot* slots, global const LightRecord* lights,
+                  global const Vertex* vertices, global const Triangle* triangles, global const Sphere* spheres,
+                  global const Plane* planes, global const Material* materials, global const Texture* textures,
+                  global const float* texels, constant SceneConstants* constants, global ShadowRay* shadow_rays,
+                  global uint* shadow_counts, global long* film, global Counters* counters) {
+    const World world = {vertices, triangles, spheres, planes, materials, textures, texels, constants};
+    const uint chunk = get_global_id(0);
+    const uint begin = chunk * CHUNK;
+    if (begin >= count) return;
+    const uint end = min(begin + CHUNK, count);
+    uint pushed[SHADOW_SAMPLES] = {0};
+
+    for (uint i = begin; i < end; ++i) {
+        const Hit hit = hits[i];
+        if (hit.primitive == NO_INDEX) continue;
+        global const Ray* ray = rays + first_ray + i;
+        const Shading shading = shading_at(&world, ray, hit);
+        if (first_slot == 0) film_add(film, ray->pixel, unshadowed_radiance(&world, &shading), counters);
+        for (uint k = 0; k < slot_count; ++k) {
+            const LightSlot slot = slots[first_slot + k];
+            global ShadowRay* shadow_ray = shadow_rays + (chunk * slot_count + k) * CHUNK + pushed[k];
+            pushed[k] += shade_light_sample(&world, &shading, lights + slot.light, slot, shadow_ray);
+        }
+    }
+
+    uint total = 0;
+    for (uint k = 0; k < slot_count; ++k) {
+        shadow_counts[chunk * slot_count + k] = pushed[k];
+        total += pushed[k];
+    }
+    if (total != 0) atom_add(&counters->shadow_rays, (ulong)total);
+}
