@@ -68,7 +68,7 @@ std::string human_bytes(std::uint64_t bytes) {
     double value = static_cast<double>(bytes);
     int unit = 0;
     for (; value >= 1024 && unit < 4; ++unit) value /= 1024;
-    return fmt::format(unit == 0 ? "{:.0f} {}" : "{:.1f} {}", value, units[unit]);
+    return fmt::format("{:.{}f} {}", value, unit == 0 ? 0 : 1, units[unit]);
 }
 
 }  // namespace raymill
