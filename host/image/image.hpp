@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "common/error.hpp"
+
 namespace raymill {
 
 /// Linear RGBA, row by row from the top left of the window.
@@ -16,34 +18,44 @@ struct Image {
     std::vector<float> rgba;  // 4 * width * height
 };
 
-/// Goes into the EXR header: what made the picture.
+/// Goes into the EXR header: what made the picture. The file's attributes are named in exr.cpp.
 struct ImageMetadata {
     int full_width = 0;  // display window
     int full_height = 0;
     int x0 = 0;  // where the image's top left pixel lies in it: the data window
     int y0 = 0;
-    glm::dmat4 world_to_camera{1};  // OpenEXR's worldToCamera / worldToNDC conventions
-    glm::dmat4 world_to_ndc{1};
+    glm::dmat4 world_to_camera{1};  // both multiply column vectors from the left, as everywhere with GLM;
+    glm::dmat4 world_to_ndc{1};     // the file holds what OpenEXR expects of worldToCamera and worldToNDC
     int samples_per_pixel = 0;
-    double render_seconds = 0;
+    double render_seconds = 0;  // the one attribute in which two renders of a scene differ
     std::uint64_t scene_hash = 0;
     std::string scene_file;
     std::string version;
 };
 
+/// float32 keeps every bit. half16 rounds to nearest, ties to even; finite values beyond the largest half (65504)
+/// become the largest half rather than infinite.
 enum class ExrPixels { float32, half16 };
 
-/// Calls write(temporary path) and renames the result to `file`; on any failure neither is left behind.
-/// Throws OutputError with what failed and why.
+enum class ImageFormat { exr, png };
+
+/// What the extension of `file` (.exr or .png, in any case) asks for. Throws UsageError for any other.
+ImageFormat image_format(const std::string& file);
+
+/// Calls write(temporary path) and renames the result to `file`. The temporary is an empty file in the same folder; if
+/// anything fails it is removed, and a `file` that was there before stays as it was. Symbolic links are followed, and
+/// an existing file keeps its permissions. What is not a regular file (a pipe, /dev/stdout) receives the bytes instead.
+/// Throws OutputError with what failed and why; what `write` throws passes through.
 void write_atomically(const std::string& file, const std::function<void(const std::string& temporary)>& write);
 
 /// Throws OutputError if `file` could not be created (folder missing, no permission), without touching it.
 void check_writable(const std::string& file);
 
-/// Channels R G B A. Throws OutputError.
+/// Channels R G B A, ZIP compression. Atomic as write_atomically is. Throws OutputError.
 void write_exr(const std::string& file, const Image& image, const ImageMetadata& metadata, ExrPixels pixels);
 
-/// 8-bit sRGB after 2^exposure, values clamped to [0, 1]; alpha is written as 255. Throws OutputError.
+/// 8-bit sRGB after 2^exposure, values clamped to [0, 1] and NaN black; opaque, whatever the image's alpha.
+/// Atomic as write_atomically is. Throws OutputError.
 void write_png(const std::string& file, const Image& image, double exposure);
 
 }  // namespace raymill

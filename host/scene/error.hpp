@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "common/error.hpp"
+
 namespace raymill {
 
 /// Where something stands in a text file. line and column count from 1; 0 means unknown.
@@ -36,18 +38,6 @@ class SceneError : public std::runtime_error {
 
   private:
     std::vector<Diagnostic> diagnostics_;
-};
-
-/// Bad arguments on the command line. Exit status 2.
-class UsageError : public std::runtime_error {
-  public:
-    using std::runtime_error::runtime_error;
-};
-
-/// A file could not be written. Exit status 1.
-class OutputError : public std::runtime_error {
-  public:
-    using std::runtime_error::runtime_error;
 };
 
 }  // namespace raymill

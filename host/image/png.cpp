@@ -1,0 +1,59 @@
+// PNG output through libpng's simplified interface, which declares 8-bit images as sRGB by an sRGB chunk.
+#include <png.h>
+
+#include <cassert>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "image/image.hpp"
+#include "image/output_error.hpp"
+#include "image/srgb.hpp"
+
+namespace raymill {
+
+std::uint8_t srgb_code(double linear) {
+    if (!(linear > 0)) return 0;  // NaN too
+    if (linear >= 1) return 255;
+    const double encoded = linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+    return static_cast<std::uint8_t>(std::lround(255 * encoded));
+}
+
+namespace {
+
+std::vector<std::uint8_t> encode(const Image& image, double exposure) {
+    const double scale = std::exp2(exposure);
+    std::vector<std::uint8_t> rgb;
+    rgb.reserve(image.rgba.size() / 4 * 3);
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4)
+        for (std::size_t channel = 0; channel < 3; ++channel) rgb.push_back(srgb_code(scale * image.rgba[i + channel]));
+    return rgb;
+}
+
+void write_rgb(const std::string& file, const std::string& temporary, const Image& image,
+               const std::vector<std::uint8_t>& rgb) {
+    const auto close = [](std::FILE* stream) { std::fclose(stream); };
+    std::unique_ptr<std::FILE, decltype(close)> stream(std::fopen(temporary.c_str(), "wb"), close);
+    if (!stream) throw write_error(file, errno);
+
+    png_image png{};
+    png.version = PNG_IMAGE_VERSION;
+    png.width = static_cast<png_uint_32>(image.width);
+    png.height = static_cast<png_uint_32>(image.height);
+    png.format = PNG_FORMAT_RGB;
+    errno = 0;  // libpng says that a write failed, the system why
+    if (png_image_write_to_stdio(&png, stream.get(), 0, rgb.data(), 0, nullptr) == 0)
+        throw errno != 0 ? write_error(file, errno) : write_error(file, png.message);
+    if (std::fclose(stream.release()) != 0) throw write_error(file, errno);
+}
+
+}  // namespace
+
+void write_png(const std::string& file, const Image& image, double exposure) {
+    assert(image.rgba.size() == 4 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+    const std::vector<std::uint8_t> rgb = encode(image, exposure);
+    write_atomically(file, [&](const std::string& temporary) { write_rgb(file, temporary, image, rgb); });
+}
+
+}  // namespace raymill
