@@ -1,0 +1,139 @@
+#include "cli/arguments.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <vector>
+
+namespace raymill {
+
+namespace {
+
+constexpr int largest_side = 65536;
+
+/// The whole text as a number, or nothing.
+template <class Number>
+std::optional<Number> number(std::string_view text) {
+    Number value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+    return value;
+}
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+    std::vector<std::string_view> parts;
+    for (;;) {
+        const std::size_t end = text.find(separator);
+        parts.push_back(text.substr(0, end));
+        if (end == std::string_view::npos) return parts;
+        text.remove_prefix(end + 1);
+    }
+}
+
+}  // namespace
+
+std::pair<int, int> parse_size(const std::string& text) {
+    const auto parts = split(text, 'x');
+    if (parts.size() == 2) {
+        const auto width = number<int>(parts[0]), height = number<int>(parts[1]);
+        if (width && height && *width >= 1 && *height >= 1 && *width <= largest_side && *height <= largest_side)
+            return {*width, *height};
+    }
+    throw UsageError(fmt::format("--size {}: give width and height in pixels, 1 to {}, as in 640x480", text, largest_side));
+}
+
+Crop parse_crop(const std::string& text) {
+    const auto parts = split(text, ',');
+    double values[4] = {0, 0, 0, 0};
+    bool valid = parts.size() == 4;
+    for (std::size_t i = 0; valid && i < 4; ++i) {
+        const auto value = number<double>(parts[i]);
+        valid = value && *value >= 0 && *value <= 1;
+        if (valid) values[i] = *value;
+    }
+    if (!valid || values[0] >= values[1] || values[2] >= values[3])
+        throw UsageError(fmt::format(
+            "--crop {}: give four fractions x0,x1,y0,y1 with 0 <= x0 < x1 <= 1 and 0 <= y0 < y1 <= 1, as in 0.25,0.75,0,1",
+            text));
+    return {values[0], values[1], values[2], values[3]};
+}
+
+std::uint64_t parse_bytes(const std::string& text) {
+    const std::size_t digits = text.find_first_not_of("0123456789.");
+    const auto value = number<double>(std::string_view(text).substr(0, digits));
+    std::string unit = digits == std::string::npos ? "" : text.substr(digits);
+    for (const char* suffix : {"iB", "B"})
+        if (unit.ends_with(suffix)) unit.resize(unit.size() - std::string_view(suffix).size());
+    const std::string_view units = "KMGT";
+    const std::size_t power = unit.empty() ? 0 : units.find(unit[0]) + 1;
+    const double bytes = value ? *value * std::pow(1024.0, static_cast<double>(power)) : 0;
+    if (!value || unit.size() > 1 || (!unit.empty() && power == 0) || !(bytes >= 1) || bytes > 1e18)
+        throw UsageError(fmt::format("--mem-limit {}: give a size in bytes, as in 512M or 2G", text));
+    return static_cast<std::uint64_t>(bytes);
+}
+
+void SceneArguments::add_to(CLI::App& command) {
+    command.add_option("SCENE", file, "Scene file (.toml) or bare model (.obj)")->required();
+    command.add_option("--size", size, "Image size in pixels, as in 640x480")->type_name("WxH");
+    command.add_option("--spp", spp, "Samples per pixel, stratified")->type_name("N")->check(CLI::Range(1, 1 << 20));
+    command.add_option("--depth", depth, "Recursion limit; 0 is local illumination with shadows")
+        ->type_name("N")
+        ->check(CLI::Range(0, 1000));
+    command.add_option("--integrator", integrator, "whitted")->type_name("NAME");
+    command.add_option("--crop", crop, "Render only this window, in fractions of the image")->type_name("x0,x1,y0,y1");
+    command.add_option("--seed", seed, "Seed of the random numbers")->type_name("N");
+    command.add_option("--exposure", exposure, "Stops by which a PNG is brightened")->type_name("F");
+}
+
+Scene SceneArguments::load() const {
+    std::pair<int, int> pixels{0, 0};
+    std::optional<Crop> window;
+    if (!size.empty()) pixels = parse_size(size);
+    if (!crop.empty()) window = parse_crop(crop);
+    if (exposure && !(std::abs(*exposure) <= 100)) throw UsageError("--exposure: give stops from -100 to 100");
+    if (!integrator.empty() && integrator != "whitted")
+        throw UsageError(fmt::format("--integrator {}: this version has the integrator whitted", integrator));
+
+    Scene scene = load_scene(file);
+    RenderSettings& settings = scene.settings;
+    if (!size.empty()) std::tie(settings.width, settings.height) = pixels;
+    if (spp) settings.spp = *spp;
+    if (depth) settings.depth = *depth;
+    if (seed) settings.seed = *seed;
+    if (exposure) settings.exposure = *exposure;
+    if (window) settings.crop = *window;
+    const PixelWindow rendered = crop_window(settings);
+    if (rendered.width < 1 || rendered.height < 1)
+        throw UsageError(fmt::format("--crop {}: no pixel of the {} x {} image lies in it", crop, settings.width,
+                                     settings.height));
+    return scene;
+}
+
+void DeviceArguments::add_to(CLI::App& command) {
+    command.add_option("--device", device, "Device by index or part of its name; `raymill devices` lists them")
+        ->type_name("INDEX|NAME");
+    command.add_option("--threads", threads, "Compute units to use; all by default")
+        ->type_name("N")
+        ->check(CLI::Range(1u, 65536u));
+    command.add_option("--queue-capacity", queue_capacity, "Rays of a batch; the image does not depend on it")
+        ->type_name("N")
+        ->check(CLI::Range(1u, 1u << 28));
+    command.add_option("--work-group", work_group, "Work-items of a group; the image does not depend on it")
+        ->type_name("N")
+        ->check(CLI::Range(1u, 1u << 20));
+    command.add_option("--mem-limit", mem_limit, "Device memory that may be used, as in 512M")->type_name("SIZE");
+    command.add_option("--kernel-dir", kernel_dir, "Read the kernels from this folder instead of the program")
+        ->type_name("DIR");
+}
+
+RenderOptions DeviceArguments::options() const {
+    RenderOptions options;
+    options.memory.queue_capacity = queue_capacity;
+    if (!mem_limit.empty()) options.memory.limit = parse_bytes(mem_limit);
+    options.work_group = work_group;
+    options.kernel_dir = kernel_dir;
+    return options;
+}
+
+}  // namespace raymill
