@@ -74,6 +74,7 @@ struct SceneMaterial {
     Highlight highlight = Highlight::phong;
     Shading shading = Shading::phong;
     glm::vec3 emission{0};
+    bool one_sided_emission = false;  // the back of a rectangle or disk light does not shine; no key of the scene file
     float reflection = 0;
     float transmission = 0;
     glm::vec3 base_color{1};
