@@ -31,10 +31,9 @@ Refraction refraction_about(const dvec3& d, const dvec3& n, double eta) {
     return {refract(d, n, eta), fresnel(std::clamp(-glm::dot(d, n), 0.0, 1.0), eta)};
 }
 
-/// About the shading normal where that works: not if it faces away from the ray, nor if the refracted ray would stay on
-/// the incoming side. Both normals face the incoming side of the geometric surface.
+/// About the shading normal, unless the refracted ray would stay on the incoming side. Both normals face the incoming
+/// side of the geometric surface; the shading normal may face away from the ray all the same, which then grazes it.
 Refraction refraction(const dvec3& d, const dvec3& shading, const dvec3& geometric, double eta) {
-    if (glm::dot(d, shading) >= 0) return refraction_about(d, geometric, eta);
     const Refraction smooth = refraction_about(d, shading, eta);
     if (smooth.direction && glm::dot(*smooth.direction, geometric) >= 0) return refraction_about(d, geometric, eta);
     return smooth;

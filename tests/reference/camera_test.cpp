@@ -1,6 +1,8 @@
 #include <cmath>
 #include <set>
 
+#include "lib/random.h"
+#include "reference/formulas.hpp"
 #include "scene_builder.hpp"
 
 namespace raymill::reference {
@@ -86,8 +88,10 @@ TEST(CameraRay, all_rays_of_a_lens_meet_in_the_plane_in_focus_and_start_on_the_l
             const auto at_focus = [](const Ray& r) { return r.origin + 3 / -r.direction.z * r.direction; };
             expect_near(at_focus(ray), at_focus(through_pinhole), rounding * 10);  // coordinates up to 5
             const dvec3 on_lens = ray.origin - through_pinhole.origin;
+            const std::uint32_t key = random_key(path_camera(0, 2), RANDOM_LENS);  // pixel (2, 0)
+            const dvec2 disk = 0.25 * concentric_disk(stratified_square(sample, 16, key));
+            expect_near(on_lens, {disk.x, disk.y, 0}, rounding);
             EXPECT_LE(glm::length(on_lens), 0.25 + rounding);
-            EXPECT_NEAR(on_lens.z, 0, rounding);
             off_centre = off_centre || glm::length(on_lens) > 0.125;
         }
         EXPECT_TRUE(off_centre);

@@ -2,6 +2,8 @@
 #include <glm/gtc/constants.hpp>
 #include <set>
 
+#include "lib/random.h"
+#include "reference/formulas.hpp"
 #include "scene_builder.hpp"
 
 namespace raymill::reference {
@@ -79,6 +81,20 @@ TEST(SpotLightSample, multiplies_attenuation_and_cone) {
     EXPECT_NEAR(seen_from(light, {4, 0, 0}).incoming.x, ramp * ramp / 32, rounding);
     EXPECT_EQ(seen_from(light, {0, 0, 8}).incoming, dvec3(0));  // 63 degrees
     EXPECT_EQ(seen_from(light, {0, 5, 0}).incoming, dvec3(0));  // behind
+}
+
+TEST(LightSampleNumber, counts_through_the_camera_samples_in_a_family_of_its_own_path_and_light) {
+    SceneBuilder b;
+    RectangleLight light;
+    light.edge_v = {0, 0, 1};
+    b.add_light(AmbientLight{});
+    b.add_light(light, 3);
+    b.scene.settings.spp = 2;
+    const LightSample s = Tracer(b.scene).sample_light(1, 2, {0, -2, 0}, 1, 77);
+    const dvec3 on_light = dvec3(0, -2, 0) + s.distance * s.direction;
+    // Light sample 2 of camera sample 1: number 1 * 3 + 2 of 2 * 3; the edges are those of the unit square.
+    const dvec2 ab = stratified_square(5, 6, random_key(77, RANDOM_LIGHT + 1));
+    expect_near(on_light, {ab.x - 0.5, 0, ab.y - 0.5}, rounding);
 }
 
 TEST(AreaLightSample, gives_nothing_behind_a_rectangle_or_disk_or_inside_a_sphere) {

@@ -132,6 +132,23 @@ TEST(Gouraud, interpolates_what_the_vertices_see) {
     expect_near(terms.specular, specular, 1e-7);
 }
 
+TEST(Gouraud, an_area_light_keeps_what_it_gives_to_the_pixel) {
+    SceneMaterial material;
+    material.diffuse = glm::vec3(1);
+    material.shading = Shading::gouraud;
+    const glm::vec3 y(0, 1, 0);
+    SceneBuilder b = smooth_triangle(material, {y, y, y});
+    DiskLight light;
+    light.center = {0, 2, 0};
+    b.add_light(light);
+    const Ray ray = to_origin({0.5, 2, 0});
+    const LightSample s = Tracer(b.scene).sample_light(0, 0, dvec3(0), 0, 0);
+    const dvec3 q = s.distance * s.direction;
+    double cosines = 0;
+    for (const dvec3 p : {dvec3(-1, 0, 1), dvec3(1, 0, 1), dvec3(0, 0, -2)}) cosines += glm::normalize(q - p).y;
+    EXPECT_NEAR(first_terms(b.scene, ray).diffuse.x, cosines / 3 * s.incoming.x, rounding);
+}
+
 TEST(Gouraud, spheres_and_flat_faces_are_shaded_at_the_pixel) {
     SceneMaterial smooth, gouraud;
     gouraud.shading = Shading::gouraud;

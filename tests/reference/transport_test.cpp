@@ -1,6 +1,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "lib/random.h"
 #include "reference/formulas.hpp"
 #include "scene_builder.hpp"
 
@@ -87,6 +88,42 @@ TEST(MinWeight, cuts_the_branches_that_weigh_less) {
     b.scene.settings.depth = 20;
     b.scene.settings.min_weight = 0.25;
     EXPECT_EQ(radiance(b.scene, {{0, 0, 0}, {0, 0, 1}}).x, 1.75);  // weights 1, 1/2, 1/4
+}
+
+TEST(MinWeight, counts_what_was_absorbed_on_the_way) {
+    SceneMaterial material = clear(1);
+    material.absorption = glm::vec3(1);
+    SceneBuilder b;
+    add_slab(b, 2, b.add_material(material));
+    b.scene.settings.background = {1, 1, 1};
+    const Ray ray{{0, 0, -1}, {0, 0, 1}};
+    b.scene.settings.min_weight = std::exp(-2) * 0.99;
+    EXPECT_NEAR(radiance(b.scene, ray).x, std::exp(-2), rounding);
+    b.scene.settings.min_weight = std::exp(-2) * 1.01;
+    EXPECT_EQ(radiance(b.scene, ray).x, 0);
+}
+
+TEST(Branches, each_draws_light_samples_of_its_own_path) {
+    SceneMaterial both = clear(1.5f);
+    both.reflection = both.transmission = 0.5f;
+    SceneBuilder b;
+    b.add_plane({0, 0, 0}, {0, 0, 1}, b.add_material(both));
+    b.add_plane({0, 0, 5}, {0, 0, -1});
+    b.add_plane({0, 0, -5}, {0, 0, 1});
+    b.scene.settings.shadows = ShadowMode::none;
+    PointLight light;
+    light.radius = 2;
+    b.add_light(light);
+    const Tracer tracer(b.scene);
+    const Ray ray{{0.1, 0.2, 1}, {0, 0, -1}};
+    double expected = 0;
+    for (const std::uint32_t branch : {0u, 1u}) {
+        const Ray child{{0.1, 0.2, 0}, {0, 0, branch == 0 ? 1.0 : -1.0}};
+        const Hit hit = tracer.intersect(child);
+        const Surface s = tracer.surface(child, hit);
+        expected += 0.5 * tracer.local_terms(child, hit, s, 0, 0, 0, path_child(9, branch)).diffuse.x;
+    }
+    EXPECT_NEAR(tracer.radiance(ray, 0, 0, 9).x, expected, rounding);
 }
 
 TEST(Refraction, a_slab_shifts_the_ray_without_turning_it) {
