@@ -238,7 +238,7 @@ typedef struct {
 
 /// What every shading stage needs to know of the scene beside its arrays.
 typedef struct {
-    float background[3];  // radiance of rays that miss; scales the environment's image if there is one
+    float background[3];  // radiance of rays that miss, constant environments included
     uint triangle_count;
     float ambient[3];  // sum of the ambient lights
     uint sphere_count;
@@ -251,7 +251,8 @@ typedef struct {
     float min_weight;
     uint any_filter;      // some material transmits: a filtered shadow ray may pass through
     uint environment;     // index of the lat-long texture that rays see when they miss, or NO_INDEX
-    uint slot_count;      // light samples of a hit, all lights together
+    float environment_scale[3];
+    uint slot_count;  // light samples of a hit, all lights together
 } SceneConstants;
 
 RAYMILL_ASSERT_SIZE(Vertex, 32);
@@ -270,7 +271,7 @@ RAYMILL_ASSERT_SIZE(LightRecord, 96);
 RAYMILL_ASSERT_SIZE(LightSlot, 8);
 RAYMILL_ASSERT_SIZE(CameraRecord, 92);
 RAYMILL_ASSERT_SIZE(Counters, 40);
-RAYMILL_ASSERT_SIZE(SceneConstants, 72);
+RAYMILL_ASSERT_SIZE(SceneConstants, 84);
 
 #ifndef __OPENCL_VERSION__
 }  // namespace raymill

@@ -13,20 +13,15 @@ namespace raymill::reference {
 namespace {
 
 constexpr double pi = glm::pi<double>();
-/// A shadow segment to an area light ends this share before it, so as not to meet the light's own surface.
-constexpr double area_light_gap = 1e-4;
+/// A shadow segment to a light ends this share before it, so as not to meet the surface of the lamp.
+constexpr double light_gap = 1e-4;
 
 /// Direction and distance from p to q, dark as yet. At distance zero there is no direction.
 LightSample towards(const dvec3& q, const dvec3& p) {
     LightSample s;
-    s.distance = s.shadow_distance = glm::length(q - p);
+    s.distance = glm::length(q - p);
+    s.shadow_distance = s.distance * (1 - light_gap);
     if (s.distance > 0) s.direction = (q - p) / s.distance;
-    return s;
-}
-
-LightSample towards_area(const dvec3& q, const dvec3& p) {
-    LightSample s = towards(q, p);
-    s.shadow_distance *= 1 - area_light_gap;
     return s;
 }
 
@@ -63,7 +58,7 @@ LightSample seen(const DirectionalLight& light, const dvec2&, const dvec3&) {
 
 /// The sample q of a flat light: L cos(theta) area / (pi d^2), dark behind.
 LightSample flat_area_seen(const dvec3& q, const dvec3& normal, double area, const dvec3& radiance, const dvec3& p) {
-    LightSample s = towards_area(q, p);
+    LightSample s = towards(q, p);
     const double cos_light = -glm::dot(normal, s.direction);
     if (cos_light > 0) s.incoming = radiance * (cos_light * area / (pi * s.distance * s.distance));
     return s;
@@ -104,7 +99,7 @@ LightSample seen(const SphereLight& light, const dvec2& ab, const dvec3& p) {
                                  cosine * axis.direction);
     const double half_chord2 = radius * radius - axis.distance * axis.distance * sin2;
     s.distance = axis.distance * cosine - std::sqrt(std::max(0.0, half_chord2));
-    s.shadow_distance = s.distance * (1 - area_light_gap);
+    s.shadow_distance = s.distance * (1 - light_gap);
     s.incoming = dvec3(light.radiance) * (2 * one_minus_cos_max);
     return s;
 }
@@ -142,7 +137,7 @@ LightSample Tracer::light_at_vertex(std::uint32_t light, const LightSample& at_h
         s = spot_seen(*spot, vertex);
         s.incoming /= source.samples;
     } else {
-        s = towards_area(q, vertex);
+        s = towards(q, vertex);
         s.incoming = at_hit.incoming;
     }
     return s;

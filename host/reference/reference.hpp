@@ -50,7 +50,7 @@ struct Surface {
 struct LightSample {
     dvec3 direction{0};  // unit, towards the light; zero where there is none to tell
     double distance = INFINITY;
-    double shadow_distance = INFINITY;  // where the shadow segment ends: before the surface of an area light
+    double shadow_distance = INFINITY;  // where the shadow segment ends: just before the lamp
     dvec3 incoming{0};                  // I_in over the light's samples; zero where the light does not shine
 };
 

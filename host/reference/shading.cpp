@@ -79,7 +79,7 @@ LocalTerms Tracer::local_terms(const Ray& ray, const Hit& hit, const Surface& su
     if (!(glm::dot(at_hit.direction, side * surface.geometric_normal) > 0)) return {};
     const SceneMaterial& material = scene_.materials[surface.material];
     const bool triangle = hit.primitive < corners_.size();
-    if (material.shading == Shading::gouraud && triangle && !is_flat(hit.primitive)) {
+    if (material.shading == Shading::gouraud && triangle) {
         return gouraud_terms(ray, hit, surface, light, at_hit);
     }
     return terms_at(material, diffuse_color(surface), side * surface.shading_normal, -glm::normalize(ray.direction),
@@ -98,7 +98,8 @@ LocalTerms Tracer::gouraud_terms(const Ray& ray, const Hit& hit, const Surface& 
     for (int k = 0; k < 3; ++k) {
         const Vertex& vertex = scene_.vertices[scene_.triangles[hit.primitive].vertex[k]];
         const dvec3 position = corners_[hit.primitive][k];
-        const dvec3 normal = side * glm::normalize(to_dvec3(vertex.normal));
+        const dvec3 normal =
+            side * (is_flat(hit.primitive) ? surface.geometric_normal : glm::normalize(to_dvec3(vertex.normal)));
         const dvec3 to_eye = ray.origin - position;
         const double distance = glm::length(to_eye);
         const dvec3 v = distance > 0 ? to_eye / distance : -glm::normalize(ray.direction);  // an eye on the vertex

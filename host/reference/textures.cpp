@@ -46,7 +46,7 @@ dvec3 environment_color(const TextureImage& image, const dvec3& direction) {
 }
 
 dvec3 checker_color(const Checker& checker, const dvec3& position) {
-    const dvec3 cell = glm::floor(position / static_cast<double>(checker.scale));
+    const dvec3 cell = glm::floor(position / static_cast<double>(checker.scale) + 1.0 / 4096);
     const bool odd = std::fmod(cell.x + cell.y + cell.z, 2.0) != 0;
     return odd ? checker.b : checker.a;
 }

@@ -191,8 +191,12 @@ SceneConstants scene_constants(const Scene& scene, std::size_t node_count) {
     for (const SceneLight& light : scene.lights) {
         if (const auto* a = std::get_if<AmbientLight>(&light.light)) ambient += a->color;
         if (const auto* e = std::get_if<EnvironmentLight>(&light.light)) {
-            background = e->map ? glm::vec3(1) : e->radiance;
-            r.environment = e->map.value_or(NO_INDEX);
+            if (e->map) {
+                r.environment = *e->map;
+                store(r.environment_scale, e->radiance);
+            } else {
+                background += e->radiance;
+            }
         }
     }
     store(r.background, background);

@@ -99,7 +99,11 @@ static inline LightSample sample_light(global const LightRecord* light, uint ind
     if (extended)
         square = stratified_sample(sample * light->samples + light_sample, spp * light->samples, path,
                                    RANDOM_LIGHT + index);
-    if (light->type == LIGHT_SPHERE) return from_sphere(light, p, square);
+    if (light->type == LIGHT_SPHERE) {
+        const LightSample s = from_sphere(light, p, square);
+        *light_position = fma3(s.distance, s.direction, p);
+        return s;
+    }
     *light_position = light_point(light, square);
     if (light->type == LIGHT_RECTANGLE || light->type == LIGHT_DISK) return from_area(light, *light_position, p);
     return from_position(light, *light_position, p);
