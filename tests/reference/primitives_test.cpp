@@ -233,15 +233,17 @@ TEST(Spawn, a_ray_that_barely_leaves_a_tilted_triangle_or_plane_does_not_meet_it
     const auto point = [&] { return glm::vec3(in(random), in(random), in(random)); };
     for (int i = 0; i < 500; ++i) {
         SceneBuilder b;
+        const glm::vec3 corner = point(), second = point(), third = point();
         if (i % 2 == 0) {
-            b.add_triangle({point(), point(), point()});
+            b.add_triangle({corner, second, third});
         } else {
-            b.add_plane(point(), glm::normalize(point()));
+            b.add_plane(corner, glm::normalize(glm::cross(second - corner, third - corner)));
         }
         const Tracer tracer(b.scene);
-        const Ray ray{dvec3(point()) * 4.0, point()};
+        const dvec3 origin = 4.0 * dvec3(point());
+        const Ray ray{origin, dvec3(corner + second + third) / 3.0 - origin};
         const Hit hit = tracer.intersect(ray);
-        if (hit.primitive == NO_INDEX) continue;
+        ASSERT_NE(hit.primitive, NO_INDEX);
         const Surface s = tracer.surface(ray, hit);
         const dvec3 n = s.geometric_normal;
         for (const double lift : {1e-12, -1e-12, 1e-9}) {
