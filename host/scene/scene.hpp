@@ -55,8 +55,7 @@ struct Camera {
     double focus = 0;     // distance along the viewing axis to the plane in focus; 0 means |look_at - eye|
 };
 
-/// Cells of a cubic checker in world space: with c = floor(p / scale + 1/4096), odd(c.x + c.y + c.z) picks b, else a.
-/// The shift keeps a surface that lies on the border of two layers, such as a floor at y = 0, in one of them.
+/// Cells of a cubic checker in world space: odd(floor(x/scale) + floor(y/scale) + floor(z/scale)) picks b, else a.
 struct Checker {
     glm::vec3 a{1};
     glm::vec3 b{0};
@@ -85,7 +84,7 @@ struct SceneMaterial {
     glm::vec3 absorption{0};  // per unit length
 };
 
-/// Linear RGB, row by row from the top.
+/// Linear RGB, row by row from the top; uv (0, 0) is the bottom left corner of the image, (1, 1) the top right.
 struct TextureImage {
     std::string file;
     std::uint32_t width = 0;
@@ -114,7 +113,7 @@ struct SpotLight {
     glm::vec3 direction{0, -1, 0};
     glm::vec3 intensity{1};
     glm::vec3 attenuation{1, 0, 0};
-    float inner_angle = 0;  // degrees, half angles
+    float inner_angle = 0;  // degrees, half angles; equal to outer_angle for a hard edge
     float outer_angle = 45;
 };
 
@@ -148,19 +147,20 @@ struct SceneLight {
                  EnvironmentLight>
         light;
     std::uint32_t samples = 1;
-    bool visible = true;  // area lights: seen by camera and secondary rays
+    bool visible = true;              // area lights: seen by camera and secondary rays
+    std::uint32_t object = NO_INDEX;  // the visible area light's geometry: an index into Scene::objects
 };
 
 /// A named piece of the scene: what `check` lists and what ids refer to.
 struct SceneObject {
-    std::string name;   // of the mesh group, else the shape's
-    std::string shape;  // the scene file's word
+    std::string name;        // of the mesh group, else the shape's
+    std::string shape;       // the scene file's word
     double chord_error = 0;  // largest distance between the exact surface and its triangles, scene units
 };
 
 /// Primitive ids: triangles, then spheres, then planes, each in order.
 struct Scene {
-    std::string file;        // as the user named it
+    std::string file;  // as the user named it
     RenderSettings settings;
     Camera camera;
     std::vector<SceneMaterial> materials;  // [0] is the default of objects without one
@@ -183,6 +183,7 @@ struct Scene {
 struct PixelWindow {
     int x0 = 0, y0 = 0, width = 0, height = 0;
 };
+/// May be empty (width or height 0) where the crop falls between pixel borders.
 PixelWindow crop_window(const RenderSettings& settings);
 
 /// Loads a scene file (.toml) or a bare model (.obj), whatever its extension says.
