@@ -84,7 +84,7 @@ struct SceneMaterial {
     glm::vec3 absorption{0};  // per unit length
 };
 
-/// Linear RGB, row by row from the top.
+/// Linear RGB, row by row from the top; uv (0, 0) is the bottom left corner of the image, (1, 1) the top right.
 struct TextureImage {
     std::string file;
     std::uint32_t width = 0;
@@ -113,7 +113,7 @@ struct SpotLight {
     glm::vec3 direction{0, -1, 0};
     glm::vec3 intensity{1};
     glm::vec3 attenuation{1, 0, 0};
-    float inner_angle = 0;  // degrees, half angles
+    float inner_angle = 0;  // degrees, half angles; equal to outer_angle for a hard edge
     float outer_angle = 45;
 };
 
@@ -147,19 +147,20 @@ struct SceneLight {
                  EnvironmentLight>
         light;
     std::uint32_t samples = 1;
-    bool visible = true;  // area lights: seen by camera and secondary rays
+    bool visible = true;              // area lights: seen by camera and secondary rays
+    std::uint32_t object = NO_INDEX;  // the visible area light's geometry: an index into Scene::objects
 };
 
 /// A named piece of the scene: what `check` lists and what ids refer to.
 struct SceneObject {
-    std::string name;   // of the mesh group, else the shape's
-    std::string shape;  // the scene file's word
+    std::string name;        // of the mesh group, else the shape's
+    std::string shape;       // the scene file's word
     double chord_error = 0;  // largest distance between the exact surface and its triangles, scene units
 };
 
 /// Primitive ids: triangles, then spheres, then planes, each in order.
 struct Scene {
-    std::string file;        // as the user named it
+    std::string file;  // as the user named it
     RenderSettings settings;
     Camera camera;
     std::vector<SceneMaterial> materials;  // [0] is the default of objects without one
@@ -182,6 +183,7 @@ struct Scene {
 struct PixelWindow {
     int x0 = 0, y0 = 0, width = 0, height = 0;
 };
+/// May be empty (width or height 0) where the crop falls between pixel borders.
 PixelWindow crop_window(const RenderSettings& settings);
 
 /// Loads a scene file (.toml) or a bare model (.obj), whatever its extension says.
