@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ namespace raymill {
 
 struct RenderOptions {
     MemoryRequest memory;
+    FilmPlanes planes;           // what the film keeps beside the beauty
     std::size_t work_group = 0;  // items; 0: what suits each stage
     std::string kernel_dir;      // empty: the embedded kernels
 };
@@ -36,7 +38,9 @@ struct StageTime {
 
 struct Frame {
     std::vector<float> rgba;         // of the crop window, row by row from the top
-    std::vector<cl_long> sums;       // the film's integers, FILM_CHANNELS a pixel
+    int samples_per_pixel = 1;
+    FilmPlanes planes;
+    std::vector<cl_long> sums;       // the film's integers: planes, in them pixels, in them FILM_CHANNELS
     RayCounts rays;
     std::uint64_t shadow_blocked = 0;
     std::uint64_t saturated = 0;     // film contributions that were cut
@@ -46,6 +50,8 @@ struct Frame {
     double finished = 1;             // share of the camera samples; less than 1 when interrupted
     std::vector<StageTime> stages;   // when timed
 
+    /// The integers of a plane that is kept.
+    std::span<const cl_long> plane(int plane) const;
     /// FNV-1a of the film's integers.
     std::uint64_t hash() const;
 };
@@ -69,6 +75,7 @@ class Renderer {
 
     const Device& device_;
     const Scene& scene_;
+    FilmPlanes planes_;
     MemoryPlan plan_;
     Stages stages_;
     DeviceScene device_scene_;
