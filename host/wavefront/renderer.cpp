@@ -119,6 +119,7 @@ Frame Renderer::render(const Progress& progress, bool time_stages) try {
             counts_.camera += count;
             waves_.push(0, count);
             batch = waves_.next();
+            show("generate", *batch);
         }
         trace(*batch);
         ++frame.waves;
@@ -151,24 +152,39 @@ Frame Renderer::render(const Progress& progress, bool time_stages) try {
 void Renderer::trace(const Batch& batch) {
     const QueueRange<Ray> rays{queues_[static_cast<std::size_t>(batch.depth)], batch.first, batch.count};
     stages_.intersect(device_scene_, rays, hits_, film_);
+    show("intersect", batch);
     for (const SlotRange& slots : slot_ranges_) {
         stages_.shade(device_scene_, rays, hits_, slots, shadow_queue_, film_);
+        show("shade", batch, slots);
         stages_.shadow(device_scene_, shadow_queue_, Stages::chunks(batch.count) * slots.count, film_);
+        show("shadow", batch, slots);
     }
     if (planes_.any_feature())
         stages_.features(device_scene_, rays, static_cast<uint>(batch.depth), hits_, film_);
-    if (batch.depth == max_depth_) {
+    if (batch.depth == max_depth_)
         device_.queue.finish();
-        return;
-    }
-    const std::size_t next = static_cast<std::size_t>(batch.depth) + 1;
-    device_.queue.enqueueFillBuffer(film_.counters.memory(), cl_ulong{0}, offsetof(Counters, children), sizeof(cl_ulong));
-    stages_.secondary(device_scene_, rays, hits_, queues_[next], film_);
+    else
+        spawn(batch, rays);
+}
+
+void Renderer::spawn(const Batch& batch, QueueRange<Ray> rays) {
+    Buffer<Ray>& queue = queues_[static_cast<std::size_t>(batch.depth) + 1];
+    constexpr std::size_t counter = offsetof(Counters, children);
+    device_.queue.enqueueFillBuffer(film_.counters.memory(), cl_ulong{0}, counter, sizeof(cl_ulong));
+    stages_.secondary(device_scene_, rays, hits_, queue, film_);
     cl_ulong children = 0;
-    device_.queue.enqueueReadBuffer(film_.counters.memory(), CL_TRUE, offsetof(Counters, children), sizeof children,
-                                    &children);
+    device_.queue.enqueueReadBuffer(film_.counters.memory(), CL_TRUE, counter, sizeof children, &children);
     waves_.push(batch.depth + 1, children);
     counts_.secondary += children;
+    show("secondary", batch, {}, &queue, static_cast<uint>(children));
+}
+
+void Renderer::show(const char* stage, const Batch& batch, SlotRange slots, const Buffer<Ray>* children,
+                    uint children_count) const {
+    if (!observer_) return;
+    device_.queue.finish();
+    const QueueRange<Ray> rays{queues_[static_cast<std::size_t>(batch.depth)], batch.first, batch.count};
+    observer_(stage, {batch, rays, hits_, slots, shadow_queue_, children, children_count, film_});
 }
 
 }  // namespace raymill

@@ -56,6 +56,21 @@ struct Frame {
     std::uint64_t hash() const;
 };
 
+/// What the queues hold right after a stage of a wave. Valid during the call only.
+struct WaveView {
+    Batch batch;
+    QueueRange<Ray> rays;
+    const Buffer<Hit>& hits;
+    SlotRange slots;                   // light samples of this pass, for shade and shadow
+    const ShadowQueue& shadow_rays;    // as shade left it: segment = chunk * slots.count + slot
+    const Buffer<Ray>* children;       // after secondary
+    uint children_count;
+    const Film& film;
+};
+
+/// Called after each of "generate", "intersect", "shade", "shadow" and "secondary" has run, when the device is idle.
+using WaveObserver = std::function<void(const char* stage, const WaveView& view)>;
+
 /// Called between waves with the share of camera samples done; returns false to stop: rays already generated are
 /// finished, no more are.
 using Progress = std::function<bool(double share)>;
@@ -67,11 +82,19 @@ class Renderer {
 
     const MemoryPlan& memory() const { return plan_; }
 
+    /// Shows every queue of the following frames to `observer`: slow, for explaining and verifying.
+    void observe(WaveObserver observer) { observer_ = std::move(observer); }
+    const DeviceScene& device_scene() const { return device_scene_; }
+    Stages& stages() { return stages_; }
+
     /// Renders one frame. time_stages: fills Frame::stages. Throws DeviceError, QueueOverflow.
     Frame render(const Progress& progress = {}, bool time_stages = false);
 
   private:
     void trace(const Batch& batch);
+    void spawn(const Batch& batch, QueueRange<Ray> rays);
+    void show(const char* stage, const Batch& batch, SlotRange slots = {}, const Buffer<Ray>* children = nullptr,
+              uint children_count = 0) const;
 
     const Device& device_;
     const Scene& scene_;
@@ -87,6 +110,7 @@ class Renderer {
     Film film_;
     std::vector<SlotRange> slot_ranges_;
     RayCounts counts_;
+    WaveObserver observer_;
 };
 
 }  // namespace raymill
