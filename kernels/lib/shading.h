@@ -85,7 +85,7 @@ static inline uint shade_light_sample(const World* world, const Shading* s, glob
                                       LightSlot slot, global ShadowRay* out) {
     float3 light_position;
     const LightSample sample = sample_light(light, slot.light, slot.sample, s->surface.position, s->ray->sample,
-                                            world->constants->spp, s->ray->path, &light_position);
+                                            s->ray->path, &light_position);
     if (!(dot3(sample.direction, s->surface.geometric_normal) > 0.0f)) return 0;
     const bool gouraud = (s->material->flags & MATERIAL_GOURAUD) && s->surface.triangle != NO_INDEX;
     const Answer answer =
