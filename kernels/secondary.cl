@@ -10,7 +10,7 @@
 static inline float3 child_throughput(const World* world, global const Material* material, float3 throughput,
                                       float share) {
     const float3 weight = throughput * load3(material->base_color) * share;
-    return max3(weight) > world->constants->min_weight ? weight : (float3)(0.0f);
+    return max3(weight) >= world->constants->min_weight ? weight : (float3)(0.0f);
 }
 
 /// The children of one hit, at most two.

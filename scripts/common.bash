@@ -13,7 +13,10 @@ fail() {
 
 # Held until release_lock, so that of several scripts started at once only one installs and builds.
 take_lock() {
-    mkdir -p "$root/build"
+    if ! mkdir -p "$root/build" 2>/dev/null || [[ ! -w $root/build ]]; then
+        say "nothing can be built in $root/build: change its permissions, or use a copy of the checkout that is yours"
+        exit 1
+    fi
     exec {lock}>"$root/build/.lock"
     flock --nonblock "$lock" && return
     say 'waiting for another script that installs or builds here'
@@ -63,7 +66,7 @@ install_packages() {
         mapfile -t missing < <(missing_packages "${packages[@]}")
         if ((${#missing[@]})); then
             become=$(root_command) || refuse_to_install "${missing[@]}"
-            say "installing ${#missing[@]} packages: ${missing[*]}"
+            say "installing ${missing[*]}"
             apt_install "$become" "${missing[@]}" >"$log" 2>&1 </dev/null ||
                 fail "$log" 'the packages could not be installed'
         fi
@@ -114,17 +117,17 @@ configure() {
 ninja_build() {
     local folder="$root/build/$1" log="$root/build/$1.log" line said=''
     shift
-    ninja -C "$folder" ${CMAKE_BUILD_PARALLEL_LEVEL:+-j "$CMAKE_BUILD_PARALLEL_LEVEL"} "$@" 2>&1 </dev/null |
+    ninja -C "$folder" ${CMAKE_BUILD_PARALLEL_LEVEL:+-j "$CMAKE_BUILD_PARALLEL_LEVEL"} "$@" 2>&1 </dev/null | {
         while IFS= read -r line; do
             printf '%s\n' "$line"
-            [[ $line == '['* ]] || continue
+            [[ $line == '['[1-9]* ]] || continue  # [0/...]: only looking
             [[ $said ]] || say "building (log: $log)"
             said=yes
             [[ -t 2 ]] && printf '\r%s] ' "${line%%]*}" >&2
         done >"$log"
-    local status=${PIPESTATUS[0]}
-    [[ -t 2 ]] && printf '\r\e[K' >&2
-    return "$status"
+        [[ $said && -t 2 ]] && printf '\r\e[K' >&2
+    }
+    return "${PIPESTATUS[0]}"
 }
 
 # ensure_build PRESET TARGET...: configures and builds what is not up to date.

@@ -183,7 +183,7 @@ CameraRecord camera_record(const Scene& scene) {
     return r;
 }
 
-SceneConstants scene_constants(const Scene& scene, std::size_t node_count) {
+SceneConstants scene_constants(const Scene& scene, std::size_t node_count, const FilmPlanes& planes) {
     const RenderSettings& settings = scene.settings;
     SceneConstants r{};
     glm::vec3 ambient{0}, background(settings.background);
@@ -191,8 +191,12 @@ SceneConstants scene_constants(const Scene& scene, std::size_t node_count) {
     for (const SceneLight& light : scene.lights) {
         if (const auto* a = std::get_if<AmbientLight>(&light.light)) ambient += a->color;
         if (const auto* e = std::get_if<EnvironmentLight>(&light.light)) {
-            background = e->map ? glm::vec3(1) : e->radiance;
-            r.environment = e->map.value_or(NO_INDEX);
+            if (e->map) {
+                r.environment = *e->map;
+                store(r.environment_scale, e->radiance);
+            } else {
+                background += e->radiance;
+            }
         }
     }
     store(r.background, background);
@@ -210,7 +214,15 @@ SceneConstants scene_constants(const Scene& scene, std::size_t node_count) {
     r.min_weight = static_cast<float>(settings.min_weight);
     r.any_filter = std::ranges::any_of(scene.materials, [](const SceneMaterial& m) { return m.transmission > 0; });
     r.slot_count = static_cast<uint>(light_slots(scene).size());
+    for (int plane = 0; plane < FILM_PLANES; ++plane)
+        r.plane[plane] = planes.keeps(plane) ? planes.index(plane) : 0;
+    r.film_pixels = static_cast<uint>(film_pixels(scene));
     return r;
+}
+
+std::uint64_t film_pixels(const Scene& scene) {
+    const PixelWindow window = crop_window(scene.settings);
+    return static_cast<std::uint64_t>(window.width) * static_cast<std::uint64_t>(window.height);
 }
 
 bool spawns_secondary_rays(const Scene& scene) {

@@ -35,9 +35,8 @@ static inline bool is_odd_cell(float3 p, float scale) {
 
 /// k_d at the surface.
 static inline float3 diffuse_color(const World* world, global const Material* material, const Surface* s) {
-    if ((material->flags & MATERIAL_CHECKER) && is_odd_cell(s->position, material->checker_scale))
-        return load3(material->checker);
-    const float3 color = load3(material->diffuse);
+    const bool odd = (material->flags & MATERIAL_CHECKER) && is_odd_cell(s->position, material->checker_scale);
+    const float3 color = odd ? load3(material->checker) : load3(material->diffuse);
     if (material->diffuse_texture == NO_INDEX) return color;
     return color * sample_texture(world, material->diffuse_texture, s->uv);
 }
@@ -110,7 +109,7 @@ static inline Split split_ray(global const Material* material, const Surface* s,
         }
         if (fresnel) {
             const float total = split.reflection + split.transmission;
-            const float f = fresnel_dielectric(fmin(fabs(dot3(direction, n)), 1.0f), eta);
+            const float f = fresnel_dielectric(clamp(-dot3(direction, n), 0.0f, 1.0f), eta);
             split.reflection = total * f;
             split.transmission = total - split.reflection;
         }
@@ -131,12 +130,6 @@ static inline Split split_ray(global const Material* material, const Surface* s,
 static inline float3 absorbed(global const Material* material, const Surface* s, float3 throughput, float t) {
     if (!s->inside || !(material->flags & MATERIAL_ABSORBING)) return throughput;
     return throughput * exp_minus(load3(material->absorption) * t);
-}
-
-/// What the surface emits towards the ray.
-static inline float3 emitted(global const Material* material, const Surface* s) {
-    if (s->inside && (material->flags & MATERIAL_ONE_SIDED)) return (float3)(0.0f);
-    return load3(material->emission);
 }
 
 #endif

@@ -25,14 +25,19 @@ static inline Shading shading_at(const World* world, global const Ray* ray, Hit 
     s.to_eye = -direction;
     s.throughput = absorbed(s.material, &s.surface, load3(ray->throughput), hit.t);
     s.diffuse = diffuse_color(world, s.material, &s.surface);
-    s.local_share = 1.0f - s.material->reflection - s.material->transmission;
+    s.local_share = fmax(1.0f - s.material->reflection - s.material->transmission, 0.0f);
     return s;
 }
 
-/// Ambient term and emission, weighted.
-static inline float3 unshadowed_radiance(const World* world, const Shading* s) {
-    const float3 ambient = load3(s->material->ambient) * constant3(world->constants->ambient) * s->local_share;
-    return s->throughput * (ambient + emitted(s->material, &s->surface));
+/// The ambient term, weighted by the blend and by the ray.
+static inline float3 ambient_radiance(const World* world, const Shading* s) {
+    return s->throughput * (load3(s->material->ambient) * constant3(world->constants->ambient) * s->local_share);
+}
+
+/// What the surface emits towards the ray, weighted by the ray alone. The back of a one-sided emitter is dark.
+static inline float3 emitted_radiance(const Shading* s) {
+    if (s->surface.inside && (s->material->flags & MATERIAL_ONE_SIDED)) return (float3)(0.0f);
+    return s->throughput * load3(s->material->emission);
 }
 
 /// Diffuse and specular answers, colours included, to one light sample.
@@ -53,19 +58,21 @@ static inline Answer gouraud_answer(const World* world, const Shading* s, global
     global const Triangle* triangle = world->triangles + s->surface.triangle;
     const float3 origin = load3(s->ray->origin);
     const float side = s->surface.inside ? -1.0f : 1.0f;
+    const bool smooth = has_normals(world, triangle);
     const float weights[3] = {s->surface.weights.x, s->surface.weights.y, s->surface.weights.z};
     float3 diffuse_light = (float3)(0.0f), specular_light = (float3)(0.0f);
     for (uint corner = 0; corner < 3; ++corner) {
         global const Vertex* vertex = world->vertices + triangle->vertex[corner];
         const float3 p = load3(vertex->position);
         const float3 normal = load3(vertex->normal);
-        const float3 n = any(normal != 0.0f) ? unit3(normal) * side : s->surface.geometric_normal;
+        const float3 n = smooth ? unit3(normal) * side : s->surface.geometric_normal;
         LightSample at_vertex = sample;
         if (light->type == LIGHT_POINT || light->type == LIGHT_SPOT)
             at_vertex = from_position(light, light_position, p);
         else if (light->type != LIGHT_DIRECTIONAL)
             at_vertex.direction = unit3(light_position - p);
-        const float2 terms = phong_terms(s->material, n, at_vertex.direction, unit3(origin - p));
+        const float3 to_eye = any(origin != p) ? unit3(origin - p) : s->to_eye;
+        const float2 terms = phong_terms(s->material, n, at_vertex.direction, to_eye);
         diffuse_light = fma3(weights[corner] * terms.x, at_vertex.incoming, diffuse_light);
         specular_light = fma3(weights[corner] * terms.y, at_vertex.incoming, specular_light);
     }
@@ -78,7 +85,7 @@ static inline uint shade_light_sample(const World* world, const Shading* s, glob
                                       LightSlot slot, global ShadowRay* out) {
     float3 light_position;
     const LightSample sample = sample_light(light, slot.light, slot.sample, s->surface.position, s->ray->sample,
-                                            world->constants->spp, s->ray->path, &light_position);
+                                            s->ray->path, &light_position);
     if (!(dot3(sample.direction, s->surface.geometric_normal) > 0.0f)) return 0;
     const bool gouraud = (s->material->flags & MATERIAL_GOURAUD) && s->surface.triangle != NO_INDEX;
     const Answer answer =

@@ -35,6 +35,14 @@ static inline float3 interpolate(float3 a, float3 b, float3 c, float3 weights) {
 
 static inline float max_abs(float3 v) { return max3(fabs(v)); }
 
+/// Whether all three vertices have a normal; a triangle of which one has none is flat.
+static inline bool has_normals(const World* world, global const Triangle* triangle) {
+    bool all_there = true;
+    for (uint corner = 0; corner < 3; ++corner)
+        all_there &= any(load3(world->vertices[triangle->vertex[corner]].normal) != 0.0f);
+    return all_there;
+}
+
 static inline void triangle_surface(const World* world, Hit hit, uint shading_flags, Surface* s) {
     global const Triangle* triangle = world->triangles + hit.primitive;
     global const Vertex* a = world->vertices + triangle->vertex[0];
@@ -52,10 +60,9 @@ static inline void triangle_surface(const World* world, Hit hit, uint shading_fl
                      fma(s->weights.x, a->uv[1], fma(s->weights.y, b->uv[1], s->weights.z * c->uv[1])));
     s->shading_normal = s->geometric_normal;
     if (shading_flags & MATERIAL_FLAT) return;
-    const float3 na = load3(a->normal), nb = load3(b->normal), nc = load3(c->normal);
-    const float3 smooth = interpolate(na, nb, nc, s->weights);
-    const bool has_normals = any(na != 0.0f) && any(nb != 0.0f) && any(nc != 0.0f);
-    if (has_normals && dot3(smooth, smooth) > 0.0f) s->shading_normal = unit3(smooth);
+    if (!has_normals(world, triangle)) return;
+    const float3 smooth = interpolate(load3(a->normal), load3(b->normal), load3(c->normal), s->weights);
+    if (dot3(smooth, smooth) > 0.0f) s->shading_normal = unit3(smooth);
 }
 
 static inline void sphere_surface(const World* world, uint index, float3 hit_point, Surface* s) {
@@ -84,6 +91,14 @@ static inline uint material_of(const World* world, uint primitive) {
     if (primitive < triangle_count) return world->triangles[primitive].material;
     const uint index = primitive - triangle_count;
     return index < sphere_count ? world->spheres[index].material : world->planes[index - sphere_count].material;
+}
+
+/// Index of the object that a primitive belongs to.
+static inline uint object_of(const World* world, uint primitive) {
+    const uint triangle_count = world->constants->triangle_count, sphere_count = world->constants->sphere_count;
+    if (primitive < triangle_count) return world->triangles[primitive].object;
+    const uint index = primitive - triangle_count;
+    return index < sphere_count ? world->spheres[index].object : world->planes[index - sphere_count].object;
 }
 
 /// The surface where the ray met hit.primitive.
