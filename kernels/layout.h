@@ -22,12 +22,33 @@ enum {
     CHUNK = 64,           // queue items that one work-item of a chunked stage owns
     TILE = 8,             // camera samples are generated in tiles of TILE x TILE pixels
     SHADOW_SAMPLES = 4,   // light samples per hit that one shade / shadow pass handles at most
-    FILM_CHANNELS = 4,    // R, G, B, and coverage
+    FILM_CHANNELS = 4,    // of a plane: R, G, B, and one more that its plane explains
     FILM_FRACTION_BITS = 32  // the film counts in units of 2^-32
+};
+
+// Planes of the film. Only the beauty is always there; SceneConstants::plane says where the others lie.
+enum {
+    FILM_BEAUTY = 0,  // R, G, B, coverage
+    // The lecture's picture: these six add up to the beauty, to the last integer. The first four are those of camera hits;
+    // what secondary rays bring home belongs to the branch that the path took first. The background counts as emission.
+    FILM_AMBIENT,
+    FILM_DIFFUSE,
+    FILM_SPECULAR,
+    FILM_EMISSION,
+    FILM_REFLECTION,
+    FILM_REFRACTION,
+    // Of camera hits:
+    FILM_ALBEDO,
+    FILM_NORMAL,    // x, y, z of the shading normal that faces the camera
+    FILM_POSITION,  // x, y, z in world space, distance along the viewing axis
+    FILM_SHADOW,    // share of each channel that reaches the hit, summed over light samples; number of light samples
+    FILM_IDS,       // object + 1 and material + 1 of sample 0, largest depth, samples: plain integers
+    FILM_PLANES
 };
 
 // A single contribution to the film is cut at this radiance; sums may reach 2^31.
 #define FILM_LIMIT 16777216.0f
+#define FILM_ONE 0x100000000l
 
 #define NO_INDEX 0xffffffffu  // no primitive, texture, material or vertex normal
 
@@ -252,7 +273,9 @@ typedef struct {
     uint any_filter;      // some material transmits: a filtered shadow ray may pass through
     uint environment;     // index of the lat-long texture that rays see when they miss, or NO_INDEX
     float environment_scale[3];
-    uint slot_count;  // light samples of a hit, all lights together
+    uint slot_count;           // light samples of a hit, all lights together
+    uint plane[FILM_PLANES];   // where each plane lies in the film, in planes; 0: not kept (but for the beauty)
+    uint film_pixels;          // of a plane
 } SceneConstants;
 
 RAYMILL_ASSERT_SIZE(Vertex, 32);
@@ -271,7 +294,7 @@ RAYMILL_ASSERT_SIZE(LightRecord, 96);
 RAYMILL_ASSERT_SIZE(LightSlot, 8);
 RAYMILL_ASSERT_SIZE(CameraRecord, 92);
 RAYMILL_ASSERT_SIZE(Counters, 40);
-RAYMILL_ASSERT_SIZE(SceneConstants, 84);
+RAYMILL_ASSERT_SIZE(SceneConstants, 136);
 
 #ifndef __OPENCL_VERSION__
 }  // namespace raymill

@@ -30,7 +30,8 @@ kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shado
                    global const BvhNode* nodes, global const TriangleBlock* triangle_blocks,
                    global const SphereBlock* sphere_blocks, global const Plane* planes,
                    global const Triangle* triangles, global const Sphere* spheres, global const Material* materials,
-                   constant SceneConstants* constants, global long* film, global Counters* counters) {
+                   constant SceneConstants* constants, global long* film_sums, global Counters* counters) {
+    const Film film = {film_sums, counters, constants};
     const Geometry geometry = scene_geometry(nodes, triangle_blocks, sphere_blocks, planes, constants);
     const World world = {0, triangles, spheres, planes, materials, 0, 0, constants};
     const uint segment = get_global_id(0);
@@ -40,10 +41,16 @@ kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shado
     for (uint i = 0; i < count; ++i) {
         global const ShadowRay* ray = shadow_rays + segment * CHUNK + i;
         const float3 left = transmittance(&geometry, &world, ray);
-        if (any(left != 0.0f))
-            film_add(film, ray->pixel, left * (load3(ray->diffuse) + load3(ray->specular)), counters);
-        else
+        if (ray->route == ROUTE_CAMERA && film_keeps(&film, FILM_SHADOW)) {
+            film_add(&film, FILM_SHADOW, ray->pixel, left);
+            film_add_units(&film, film_pixel(&film, FILM_SHADOW, ray->pixel) + 3, FILM_ONE);
+        }
+        if (any(left != 0.0f)) {
+            film_add_radiance(&film, FILM_DIFFUSE, ray->route, ray->pixel, left * load3(ray->diffuse));
+            film_add_radiance(&film, FILM_SPECULAR, ray->route, ray->pixel, left * load3(ray->specular));
+        } else {
             ++blocked;
+        }
     }
     if (blocked != 0) atom_add(&counters->shadow_blocked, (ulong)blocked);
 }

@@ -13,7 +13,10 @@ fail() {
 
 # Held until release_lock, so that of several scripts started at once only one installs and builds.
 take_lock() {
-    mkdir -p "$root/build"
+    if ! mkdir -p "$root/build" 2>/dev/null || [[ ! -w $root/build ]]; then
+        say "nothing can be built in $root/build: change its permissions, or use a copy of the checkout that is yours"
+        exit 1
+    fi
     exec {lock}>"$root/build/.lock"
     flock --nonblock "$lock" && return
     say 'waiting for another script that installs or builds here'
@@ -117,7 +120,7 @@ ninja_build() {
     ninja -C "$folder" ${CMAKE_BUILD_PARALLEL_LEVEL:+-j "$CMAKE_BUILD_PARALLEL_LEVEL"} "$@" 2>&1 </dev/null | {
         while IFS= read -r line; do
             printf '%s\n' "$line"
-            [[ $line == '['* ]] || continue
+            [[ $line == '['[1-9]* ]] || continue  # [0/...]: only looking
             [[ $said ]] || say "building (log: $log)"
             said=yes
             [[ -t 2 ]] && printf '\r%s] ' "${line%%]*}" >&2

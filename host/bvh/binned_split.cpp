@@ -38,24 +38,11 @@ struct Bins {
     }
 };
 
-RangeBounds measure_serially(std::span<const PrimitiveRef> refs) {
-    RangeBounds bounds;
-    for (const PrimitiveRef& ref : refs) {
-        bounds.box.add(ref.box());
-        bounds.half_centroids.add(ref.half_centroid());
-    }
-    return bounds;
-}
-
 /// Calls add(part of the range, accumulator) on chunks, in parallel if the range is long, and joins the accumulators.
 template <typename Result, typename Add>
-Result reduce(std::span<const PrimitiveRef> refs, const Add& add) {
-    Result result;
-    if (refs.size() < PARALLEL_SIZE) {
-        add(refs, result);
-        return result;
-    }
-    return tbb::parallel_reduce(
+void reduce(std::span<const PrimitiveRef> refs, Result& result, const Add& add) {
+    if (refs.size() < PARALLEL_SIZE) return add(refs, result);
+    result = tbb::parallel_reduce(
         tbb::blocked_range<std::size_t>(0, refs.size(), CHUNK_SIZE), result,
         [&](const tbb::blocked_range<std::size_t>& part, Result partial) {
             add(refs.subspan(part.begin(), part.size()), partial);
@@ -107,22 +94,30 @@ struct RightCosts {
 }  // namespace
 
 RangeBounds measure(std::span<const PrimitiveRef> refs) {
-    return reduce<RangeBounds>(
-        refs, [](std::span<const PrimitiveRef> part, RangeBounds& bounds) { bounds.add(measure_serially(part)); });
+    RangeBounds bounds;
+    reduce(refs, bounds, [](std::span<const PrimitiveRef> part, RangeBounds& partial) {
+        RangeBounds local = partial;  // in registers during the loop
+        for (const PrimitiveRef& ref : part) {
+            local.box.add(ref.box());
+            local.half_centroids.add(ref.half_centroid());
+        }
+        partial = local;
+    });
+    return bounds;
 }
 
 BinGrid::BinGrid(const Box& half_centroids) : base_(half_centroids.lower), scale_{} {
     const Float4 extent = half_centroids.upper - half_centroids.lower;
     for (int axis = 0; axis < 3; ++axis) {
-        // Multiplied with the extent this rounds to less than BIN_COUNT or is clamped to the last bin.
-        const float scale = static_cast<float>(BIN_COUNT) / extent[axis];
+        // A little less than BIN_COUNT, so that the last centroid does not round into a bin beyond the last.
+        const float scale = (BIN_COUNT - 0.001f) / extent[axis];
         if (std::isfinite(scale)) scale_[axis] = scale;
     }
 }
 
 std::optional<Split> find_split(std::span<const PrimitiveRef> refs, const RangeBounds& bounds, const BinGrid& grid) {
-    const Bins bins =
-        reduce<Bins>(refs, [&](std::span<const PrimitiveRef> part, Bins& partial) { partial.add(part, grid); });
+    Bins bins;
+    reduce(refs, bins, [&](std::span<const PrimitiveRef> part, Bins& partial) { partial.add(part, grid); });
     const AreaScale area(bounds.box);
     std::optional<Split> best;
     float best_cost = INFINITY;
@@ -146,15 +141,16 @@ std::optional<Split> find_split(std::span<const PrimitiveRef> refs, const RangeB
 }
 
 void partition(std::span<const PrimitiveRef> source, PrimitiveRef* target, const BinGrid& grid, const Split& split) {
-    const auto scatter = [&](std::span<const PrimitiveRef> part, PrimitiveRef* left, PrimitiveRef* right) {
+    // Which side comes next cannot be predicted: the place is computed, not branched to.
+    const auto scatter = [&](std::span<const PrimitiveRef> part, std::size_t left, std::size_t right) {
         for (const PrimitiveRef& ref : part) {
-            const bool goes_left = split.goes_left(grid, ref);
-            *(goes_left ? left : right) = ref;  // no branch: which side comes next cannot be predicted
+            const std::size_t goes_left = split.goes_left(grid, ref);
+            target[right + (left - right) * goes_left] = ref;
             left += goes_left;
-            right += !goes_left;
+            right += 1 - goes_left;
         }
     };
-    if (source.size() < PARALLEL_SIZE) return scatter(source, target, target + split.left_count);
+    if (source.size() < PARALLEL_SIZE) return scatter(source, 0, split.left_count);
 
     const std::size_t chunk_count = (source.size() + CHUNK_SIZE - 1) / CHUNK_SIZE;
     const auto chunk = [&](std::size_t i) {
@@ -167,7 +163,7 @@ void partition(std::span<const PrimitiveRef> source, PrimitiveRef* target, const
     for (std::size_t i = 0; i < chunk_count; ++i) left_before[i + 1] += left_before[i];
     tbb::parallel_for(std::size_t{0}, chunk_count, [&](std::size_t i) {
         const std::size_t right_before = i * CHUNK_SIZE - left_before[i];
-        scatter(chunk(i), target + left_before[i], target + split.left_count + right_before);
+        scatter(chunk(i), left_before[i], split.left_count + right_before);
     });
 }
 

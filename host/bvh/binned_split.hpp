@@ -31,8 +31,7 @@ class BinGrid {
     explicit BinGrid(const Box& half_centroids);
 
     Int4 bins(const PrimitiveRef& ref) const {
-        const Float4 place = (ref.half_centroid() - base_) * scale_;
-        return __builtin_convertvector(min(place, splat(BIN_COUNT - 1)), Int4);
+        return __builtin_convertvector((ref.half_centroid() - base_) * scale_, Int4);
     }
 
   private:

@@ -79,7 +79,7 @@ int check(const CheckArguments& arguments) {
     print_scene(scene);
     print_hierarchy(bvh);
     const DeviceInfo device = planned_device(arguments.device);
-    print_memory(plan_memory(scene, bvh, options.memory, device), device);
+    print_memory(plan_memory(scene, bvh, options.planes, options.memory, device), device);
     return 0;
 }
 

@@ -6,6 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "bvh/bvh.hpp"
+#include "cli/aov.hpp"
 #include "cli/arguments.hpp"
 #include "cli/commands.hpp"
 #include "cli/progress.hpp"
@@ -21,6 +22,7 @@ struct RenderArguments {
     SceneArguments scene;
     DeviceArguments device;
     std::string output;
+    std::string aovs;
     bool half = false;
     bool stats = false;
     bool quiet = false;
@@ -57,13 +59,15 @@ ImageMetadata metadata_of(const Scene& scene, double seconds) {
     return m;
 }
 
-void write_picture(const RenderArguments& arguments, const Scene& scene, Frame& frame) {
+void write_picture(const RenderArguments& arguments, const Scene& scene, Frame& frame,
+                   const std::vector<std::string>& aovs) {
     const PixelWindow window = crop_window(scene.settings);
+    const std::vector<ImageLayer> layers = aov_layers(frame, aovs);
     const Image image{window.width, window.height, std::move(frame.rgba)};
     if (image_format(arguments.output) == ImageFormat::png)
         write_png(arguments.output, image, scene.settings.exposure);
     else
-        write_exr(arguments.output, image, metadata_of(scene, frame.seconds),
+        write_exr(arguments.output, image, layers, metadata_of(scene, frame.seconds),
                   arguments.half ? ExrPixels::half16 : ExrPixels::float32);
 }
 
@@ -108,9 +112,12 @@ void print_closing_line(const RenderArguments& arguments, const Scene& scene, co
 int render(RenderArguments arguments) {
     const auto start = std::chrono::steady_clock::now();
     if (arguments.output.empty()) arguments.output = default_output(arguments.scene.file);
-    const RenderOptions options = arguments.device.options();
-    if (image_format(arguments.output) == ImageFormat::png && arguments.half)
-        throw UsageError("--half: a PNG has 8 bits a channel; give an output that ends in .exr");
+    const std::vector<std::string> aovs = parse_aovs(arguments.aovs);
+    RenderOptions options = arguments.device.options();
+    options.planes = aov_planes(aovs);
+    if (image_format(arguments.output) == ImageFormat::png && (arguments.half || !aovs.empty()))
+        throw UsageError(fmt::format("{}: a PNG has 8 bits a channel and no layers; give an output that ends in .exr",
+                                     arguments.half ? "--half" : "--aov"));
     const Scene scene = arguments.scene.load();
     check_writable(arguments.output);
     if (!arguments.quiet) print_warnings(scene.warnings);
@@ -131,7 +138,7 @@ int render(RenderArguments arguments) {
     bar.clear();
     if (!arguments.quiet) warn_of_film(frame);
     if (arguments.stats) print_statistics(frame, renderer, bvh, first_ray);
-    write_picture(arguments, scene, frame);
+    write_picture(arguments, scene, frame, aovs);
     if (!arguments.quiet) print_closing_line(arguments, scene, frame);
     if (frame.finished == 1) return 0;
     fmt::print(stderr, "interrupted: {:.0f}% of the samples are in {}\n", 100 * frame.finished, arguments.output);
@@ -146,6 +153,11 @@ Command add_render_command(CLI::App& app) {
     arguments->scene.add_to(command);
     command.add_option("-o,--output", arguments->output, "Picture to write; <scene>.exr in this folder by default")
         ->type_name("FILE");
+    command
+        .add_option("--aov", arguments->aovs,
+                    "Layers of the EXR file: ambient, diffuse, specular, reflection, refraction, emission (their sum is "
+                    "the picture), shadow, albedo, N, Z, P, id, depth, samples; all")
+        ->type_name("LIST");
     command.add_flag("--half", arguments->half, "16-bit floats in the EXR file instead of 32-bit ones");
     arguments->device.add_to(command);
     command.add_flag("--stats", arguments->stats, "Print where the time went");

@@ -33,13 +33,6 @@
 namespace raymill {
 namespace {
 
-/// One layer of the file: interleaved values of all pixels of the data window, one letter of `channels` each.
-struct Layer {
-    std::string prefix;    // "" or "name."
-    std::string channels;  // in the order of the values
-    const std::vector<float>* values;
-};
-
 /// A stream that remembers the first failed write: OutputFile's destructor, which writes the table of lines, swallows
 /// the exception.
 class FileStream : public Imf::OStream {
@@ -113,29 +106,29 @@ Imath::half to_half(float value) {
 }
 
 /// Declares the layer's channels and lends their memory to the frame buffer.
-void add_channels(const Layer& layer, const void* memory, Imf::PixelType type, Imf::Header& header,
+void add_channels(const ImageLayer& layer, const void* memory, Imf::PixelType type, Imf::Header& header,
                   Imf::FrameBuffer& frame_buffer) {
     const std::size_t value_size = type == Imf::HALF ? sizeof(Imath::half) : sizeof(float);
     for (std::size_t i = 0; i < layer.channels.size(); ++i) {
-        const std::string name = layer.prefix + layer.channels[i];
-        header.channels().insert(name, Imf::Channel(type));
-        frame_buffer.insert(name, Imf::Slice::Make(type, static_cast<const char*>(memory) + i * value_size,
-                                                   header.dataWindow(), layer.channels.size() * value_size));
+        header.channels().insert(layer.channels[i], Imf::Channel(type));
+        frame_buffer.insert(layer.channels[i],
+                            Imf::Slice::Make(type, static_cast<const char*>(memory) + i * value_size,
+                                             header.dataWindow(), layer.channels.size() * value_size));
     }
 }
 
 void write_layers(const std::string& file, const std::string& temporary, Imf::Header header,
-                  const std::vector<Layer>& layers, ExrPixels pixels) {
+                  const std::vector<const ImageLayer*>& layers, ExrPixels pixels) {
     Imf::FrameBuffer frame_buffer;
     std::vector<std::vector<Imath::half>> halves;
-    for (const Layer& layer : layers) {
-        if (pixels == ExrPixels::half16) {
+    for (const ImageLayer* layer : layers) {
+        if (pixels == ExrPixels::half16 && !layer->full_precision) {
             std::vector<Imath::half>& memory = halves.emplace_back();
-            memory.reserve(layer.values->size());
-            for (const float value : *layer.values) memory.push_back(to_half(value));
-            add_channels(layer, memory.data(), Imf::HALF, header, frame_buffer);
+            memory.reserve(layer->values.size());
+            for (const float value : layer->values) memory.push_back(to_half(value));
+            add_channels(*layer, memory.data(), Imf::HALF, header, frame_buffer);
         } else {
-            add_channels(layer, layer.values->data(), Imf::FLOAT, header, frame_buffer);
+            add_channels(*layer, layer->values.data(), Imf::FLOAT, header, frame_buffer);
         }
     }
 
@@ -152,13 +145,15 @@ void write_layers(const std::string& file, const std::string& temporary, Imf::He
 
 }  // namespace
 
-void write_exr(const std::string& file, const Image& image, const ImageMetadata& metadata, ExrPixels pixels) {
+void write_exr(const std::string& file, const Image& image, const std::vector<ImageLayer>& layers,
+               const ImageMetadata& metadata, ExrPixels pixels) {
     assert(image.width > 0 && image.height > 0);
     assert(image.rgba.size() == 4 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
-    const std::vector<Layer> layers = {{"", "RGBA", &image.rgba}};
+    const ImageLayer beauty{{"R", "G", "B", "A"}, image.rgba, false};
+    std::vector<const ImageLayer*> all = {&beauty};
+    for (const ImageLayer& layer : layers) all.push_back(&layer);
     const Imf::Header header = make_header(image, metadata);
-    write_atomically(file,
-                     [&](const std::string& temporary) { write_layers(file, temporary, header, layers, pixels); });
+    write_atomically(file, [&](const std::string& temporary) { write_layers(file, temporary, header, all, pixels); });
 }
 
 }  // namespace raymill

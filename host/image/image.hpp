@@ -18,6 +18,13 @@ struct Image {
     std::vector<float> rgba;  // 4 * width * height
 };
 
+/// More channels of the same pixels.
+struct ImageLayer {
+    std::vector<std::string> channels;  // full names in OpenEXR's convention, for example "N.X", "N.Y", "N.Z"
+    std::vector<float> values;          // interleaved, channels.size() a pixel
+    bool full_precision = false;        // 32 bits even where the picture has 16: distances, ids
+};
+
 /// Goes into the EXR header: what made the picture. The file's attributes are named in exr.cpp.
 struct ImageMetadata {
     int full_width = 0;  // display window
@@ -51,8 +58,9 @@ void write_atomically(const std::string& file, const std::function<void(const st
 /// Throws OutputError if `file` could not be created (folder missing, no permission), without touching it.
 void check_writable(const std::string& file);
 
-/// Channels R G B A, ZIP compression. Atomic as write_atomically is. Throws OutputError.
-void write_exr(const std::string& file, const Image& image, const ImageMetadata& metadata, ExrPixels pixels);
+/// Channels R G B A and those of the layers, ZIP compression. Atomic as write_atomically is. Throws OutputError.
+void write_exr(const std::string& file, const Image& image, const std::vector<ImageLayer>& layers,
+               const ImageMetadata& metadata, ExrPixels pixels);
 
 /// 8-bit sRGB after 2^exposure, values clamped to [0, 1] and NaN black; opaque, whatever the image's alpha.
 /// Atomic as write_atomically is. Throws OutputError.

@@ -31,10 +31,10 @@ dvec2 concentric_disk(const dvec2& square) {
     return radius * dvec2(std::cos(angle), std::sin(angle));
 }
 
-dvec2 stratified_square(std::uint32_t index, std::uint32_t count, std::uint32_t key) {
+dvec2 stratified_square(std::uint32_t index, std::uint32_t key) {
     uint x = 0;
     uint y = 0;
-    stratified_point(index, count, strata_columns(count), key, &x, &y);
+    stratified_point(index, key, &x, &y);
     return dvec2(x, y) / 16777216.0;  // 24-bit fixed point
 }
 

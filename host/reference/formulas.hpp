@@ -23,8 +23,8 @@ Tangents tangents(const dvec3& n);
 /// Source: Shirley and Chiu, "A Low Distortion Map Between Disk and Square", JGT 2(3), 1997.
 dvec2 concentric_disk(const dvec2& square);
 
-/// Point `index` of `count` stratified points of the unit square [0, 1)^2, of the family `key` (lib/random.h).
-dvec2 stratified_square(std::uint32_t index, std::uint32_t count, std::uint32_t key);
+/// Point `index` of the stratified points of the unit square [0, 1)^2, of the family `key` (lib/random.h).
+dvec2 stratified_square(std::uint32_t index, std::uint32_t key);
 
 /// A point of the unit sphere, uniform for a uniform point (a, b) of the square: z = 1 - 2a, azimuth 2 pi b from +x.
 dvec3 uniform_sphere(const dvec2& square);

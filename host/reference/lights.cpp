@@ -116,9 +116,8 @@ LightSample seen(const EnvironmentLight&, const dvec2&, const dvec3&) {
 LightSample Tracer::sample_light(std::uint32_t light, std::uint32_t light_sample, const dvec3& p, std::uint32_t sample,
                                  std::uint32_t path) const {
     const SceneLight& source = scene_.lights[light];
-    const auto count = static_cast<std::uint32_t>(scene_.settings.spp) * source.samples;
     const dvec2 ab =
-        stratified_square(sample * source.samples + light_sample, count, random_key(path, RANDOM_LIGHT + light));
+        stratified_square(sample * source.samples + light_sample, random_key(path, RANDOM_LIGHT + light));
     LightSample s = std::visit([&](const auto& l) { return seen(l, ab, p); }, source.light);
     s.incoming /= source.samples;
     return s;

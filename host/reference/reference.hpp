@@ -96,7 +96,7 @@ class Tracer {
     dvec3 emission(const Surface& surface) const;
 
     /// Sample `light_sample` of light `light` (index into Scene::lights) seen from p, on the path `path` of camera
-    /// sample `sample`: number sample * samples + light_sample of the spp * samples stratified points of
+    /// sample `sample`: number sample * samples + light_sample of the stratified points of
     /// random_key(path, RANDOM_LIGHT + light). Ambient and environment lights give nothing.
     LightSample sample_light(std::uint32_t light, std::uint32_t light_sample, const dvec3& p, std::uint32_t sample,
                              std::uint32_t path) const;

@@ -14,7 +14,7 @@ Ray Tracer::camera_ray(int x, int y, std::uint32_t sample) const {
     const Camera& camera = scene_.camera;
     const auto spp = static_cast<std::uint32_t>(settings.spp);
     const std::uint32_t path = path_camera(settings.seed, static_cast<std::uint32_t>(y * settings.width + x));
-    const dvec2 in_pixel = spp == 1 ? dvec2(0.5) : stratified_square(sample, spp, random_key(path, RANDOM_PIXEL));
+    const dvec2 in_pixel = spp == 1 ? dvec2(0.5) : stratified_square(sample, random_key(path, RANDOM_PIXEL));
 
     const dvec3 forward = glm::normalize(camera.look_at - camera.eye);
     const dvec3 right = glm::normalize(glm::cross(forward, camera.up));
@@ -31,7 +31,7 @@ Ray Tracer::camera_ray(int x, int y, std::uint32_t sample) const {
         const double focus = camera.focus > 0 ? camera.focus : glm::length(camera.look_at - camera.eye);
         const dvec3 in_focus = ray.origin + focus * ray.direction;
         const dvec2 lens =
-            camera.aperture / 2 * concentric_disk(stratified_square(sample, spp, random_key(path, RANDOM_LENS)));
+            camera.aperture / 2 * concentric_disk(stratified_square(sample, random_key(path, RANDOM_LENS)));
         ray.origin += lens.x * right + lens.y * up;
         ray.direction = in_focus - ray.origin;
     }

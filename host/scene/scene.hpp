@@ -55,7 +55,8 @@ struct Camera {
     double focus = 0;     // distance along the viewing axis to the plane in focus; 0 means |look_at - eye|
 };
 
-/// Cells of a cubic checker in world space: odd(floor(x/scale) + floor(y/scale) + floor(z/scale)) picks b, else a.
+/// Cells of a cubic checker in world space: with c = floor(p / scale + 1/4096), odd(c.x + c.y + c.z) picks b, else a.
+/// The shift keeps a surface that lies on the border of two layers, such as a floor at y = 0, in one of them.
 struct Checker {
     glm::vec3 a{1};
     glm::vec3 b{0};

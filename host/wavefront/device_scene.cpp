@@ -35,7 +35,7 @@ Buffer<T> upload(const Device& device, const std::vector<T>& values) {
 
 }  // namespace
 
-DeviceScene::DeviceScene(const Device& device, const Scene& scene, const Bvh& bvh)
+DeviceScene::DeviceScene(const Device& device, const Scene& scene, const Bvh& bvh, const FilmPlanes& planes)
     : nodes(upload(device, bvh.nodes)),
       triangle_blocks(upload(device, bvh.triangle_blocks)),
       sphere_blocks(upload(device, bvh.sphere_blocks)),
@@ -49,6 +49,6 @@ DeviceScene::DeviceScene(const Device& device, const Scene& scene, const Bvh& bv
       lights(upload(device, light_records(scene))),
       light_slots(upload(device, raymill::light_slots(scene))),
       camera(upload(device, std::vector{camera_record(scene)})),
-      constants(upload(device, std::vector{scene_constants(scene, bvh.nodes.size())})) {}
+      constants(upload(device, std::vector{scene_constants(scene, bvh.nodes.size(), planes)})) {}
 
 }  // namespace raymill

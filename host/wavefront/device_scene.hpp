@@ -4,11 +4,12 @@
 #include "bvh/bvh.hpp"
 #include "scene/scene.hpp"
 #include "wavefront/buffer.hpp"
+#include "wavefront/film_planes.hpp"
 
 namespace raymill {
 
 struct DeviceScene {
-    DeviceScene(const Device& device, const Scene& scene, const Bvh& bvh);
+    DeviceScene(const Device& device, const Scene& scene, const Bvh& bvh, const FilmPlanes& planes = {});
 
     Buffer<BvhNode> nodes;
     Buffer<TriangleBlock> triangle_blocks;

@@ -13,9 +13,7 @@ namespace {
 constexpr std::uint64_t default_capacity = 1u << 16;
 constexpr std::uint64_t smallest_default = CHUNK;
 
-MemoryPlan plan_with(const Scene& scene, const Bvh& bvh, std::uint64_t capacity) {
-    const PixelWindow window = crop_window(scene.settings);
-    const std::uint64_t pixels = static_cast<std::uint64_t>(window.width) * static_cast<std::uint64_t>(window.height);
+MemoryPlan plan_with(const Scene& scene, const Bvh& bvh, const FilmPlanes& planes, std::uint64_t capacity) {
     const std::uint64_t depth = spawns_secondary_rays(scene) ? static_cast<std::uint64_t>(scene.settings.depth) : 0;
     const std::uint64_t chunks = (capacity + CHUNK - 1) / CHUNK;
     const std::uint64_t slots = std::min<std::uint64_t>(light_slots(scene).size(), SHADOW_SAMPLES);
@@ -32,7 +30,7 @@ MemoryPlan plan_with(const Scene& scene, const Bvh& bvh, std::uint64_t capacity)
     plan.ray_queues = capacity * (1 + 2 * depth) * sizeof(Ray);
     plan.hits = capacity * sizeof(Hit);
     plan.shadow_queue = chunks * slots * (CHUNK * sizeof(ShadowRay) + sizeof(uint));
-    plan.film = pixels * FILM_CHANNELS * (sizeof(cl_long) + sizeof(float));
+    plan.film = film_pixels(scene) * FILM_CHANNELS * (planes.count() * sizeof(cl_long) + sizeof(float));
     return plan;
 }
 
@@ -44,15 +42,16 @@ std::uint64_t largest_queue(const MemoryPlan& plan) {
 
 }  // namespace
 
-MemoryPlan plan_memory(const Scene& scene, const Bvh& bvh, const MemoryRequest& request, const DeviceInfo& device) {
+MemoryPlan plan_memory(const Scene& scene, const Bvh& bvh, const FilmPlanes& planes, const MemoryRequest& request,
+                       const DeviceInfo& device) {
     const std::uint64_t limit = request.limit > 0 ? request.limit : device.global_memory;
     const auto fits = [&](const MemoryPlan& plan) {
         return plan.total() <= limit && std::max(largest_queue(plan), plan.film) <= device.largest_buffer;
     };
-    MemoryPlan plan = plan_with(scene, bvh, request.queue_capacity > 0 ? request.queue_capacity : default_capacity);
+    MemoryPlan plan = plan_with(scene, bvh, planes, request.queue_capacity > 0 ? request.queue_capacity : default_capacity);
     if (request.queue_capacity == 0)
         for (std::uint64_t c = default_capacity; !fits(plan) && c > smallest_default; c /= 2)
-            plan = plan_with(scene, bvh, c / 2);
+            plan = plan_with(scene, bvh, planes, c / 2);
     if (!fits(plan))
         throw DeviceError(fmt::format(
             "the frame needs {} (scene {}, film {}, queues of {} rays {}), more than the {} of {}: lower {}",

@@ -7,6 +7,7 @@
 #include "bvh/bvh.hpp"
 #include "device/device.hpp"
 #include "scene/scene.hpp"
+#include "wavefront/film_planes.hpp"
 
 namespace raymill {
 
@@ -30,7 +31,8 @@ struct MemoryRequest {
 };
 
 /// The plan for a frame of this scene. Throws DeviceError if it does not fit, with what to change.
-MemoryPlan plan_memory(const Scene& scene, const Bvh& bvh, const MemoryRequest& request, const DeviceInfo& device);
+MemoryPlan plan_memory(const Scene& scene, const Bvh& bvh, const FilmPlanes& planes, const MemoryRequest& request,
+                       const DeviceInfo& device);
 
 /// "1.5 GiB".
 std::string human_bytes(std::uint64_t bytes);

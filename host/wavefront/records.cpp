@@ -183,7 +183,7 @@ CameraRecord camera_record(const Scene& scene) {
     return r;
 }
 
-SceneConstants scene_constants(const Scene& scene, std::size_t node_count) {
+SceneConstants scene_constants(const Scene& scene, std::size_t node_count, const FilmPlanes& planes) {
     const RenderSettings& settings = scene.settings;
     SceneConstants r{};
     glm::vec3 ambient{0}, background(settings.background);
@@ -214,7 +214,15 @@ SceneConstants scene_constants(const Scene& scene, std::size_t node_count) {
     r.min_weight = static_cast<float>(settings.min_weight);
     r.any_filter = std::ranges::any_of(scene.materials, [](const SceneMaterial& m) { return m.transmission > 0; });
     r.slot_count = static_cast<uint>(light_slots(scene).size());
+    for (int plane = 0; plane < FILM_PLANES; ++plane)
+        r.plane[plane] = planes.keeps(plane) ? planes.index(plane) : 0;
+    r.film_pixels = static_cast<uint>(film_pixels(scene));
     return r;
+}
+
+std::uint64_t film_pixels(const Scene& scene) {
+    const PixelWindow window = crop_window(scene.settings);
+    return static_cast<std::uint64_t>(window.width) * static_cast<std::uint64_t>(window.height);
 }
 
 bool spawns_secondary_rays(const Scene& scene) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "scene/scene.hpp"
+#include "wavefront/film_planes.hpp"
 
 namespace raymill {
 
@@ -19,7 +20,10 @@ std::vector<LightSlot> light_slots(const Scene& scene);
 CameraRecord camera_record(const Scene& scene);
 
 /// node_count: of the hierarchy.
-SceneConstants scene_constants(const Scene& scene, std::size_t node_count);
+SceneConstants scene_constants(const Scene& scene, std::size_t node_count, const FilmPlanes& planes);
+
+/// Pixels of the rendered window.
+std::uint64_t film_pixels(const Scene& scene);
 
 /// Whether any material reflects or transmits: else no secondary rays exist.
 bool spawns_secondary_rays(const Scene& scene);

@@ -59,17 +59,15 @@ class StageClock {
 };
 
 std::uint64_t camera_samples(const Scene& scene) {
-    const PixelWindow window = crop_window(scene.settings);
-    return static_cast<std::uint64_t>(window.width) * static_cast<std::uint64_t>(window.height) *
-           static_cast<std::uint64_t>(scene.settings.spp);
-}
-
-std::size_t pixel_channels(const Scene& scene) {
-    const PixelWindow window = crop_window(scene.settings);
-    return static_cast<std::size_t>(window.width) * static_cast<std::size_t>(window.height) * FILM_CHANNELS;
+    return film_pixels(scene) * static_cast<std::uint64_t>(scene.settings.spp);
 }
 
 }  // namespace
+
+std::span<const cl_long> Frame::plane(int plane) const {
+    const std::size_t size = sums.size() / planes.count();
+    return std::span(sums).subspan(planes.index(plane) * size, size);
+}
 
 std::uint64_t Frame::hash() const {
     std::uint64_t h = 0xcbf29ce484222325u;
@@ -81,9 +79,10 @@ std::uint64_t Frame::hash() const {
 Renderer::Renderer(const Device& device, const Scene& scene, const Bvh& bvh, const RenderOptions& options)
     : device_(device),
       scene_(scene),
-      plan_(plan_memory(scene, bvh, options.memory, device.info)),
+      planes_(options.planes),
+      plan_(plan_memory(scene, bvh, planes_, options.memory, device.info)),
       stages_(device, options.work_group, options.kernel_dir),
-      device_scene_(device, scene, bvh),
+      device_scene_(device, scene, bvh, planes_),
       max_depth_(plan_.queues - 1),
       waves_(plan_.queue_capacity, max_depth_),
       slot_ranges_(make_slot_ranges(static_cast<uint>(device_scene_.light_slots.size()))) {
@@ -92,7 +91,7 @@ Renderer::Renderer(const Device& device, const Scene& scene, const Bvh& bvh, con
         const std::size_t segments = std::size_t{Stages::chunks(plan_.queue_capacity)} * slot_ranges_.front().count;
         hits_ = Buffer<Hit>(device, plan_.queue_capacity);
         shadow_queue_ = {{device, segments * CHUNK}, {device, segments}};
-        film_ = {{device, pixel_channels(scene)}, {device, 1}};
+        film_ = {{device, film_pixels(scene) * FILM_CHANNELS * planes_.count()}, {device, 1}};
     } catch (const cl::Error& error) {
         throw DeviceError(error);
     }
@@ -120,6 +119,7 @@ Frame Renderer::render(const Progress& progress, bool time_stages) try {
             counts_.camera += count;
             waves_.push(0, count);
             batch = waves_.next();
+            show("generate", *batch);
         }
         trace(*batch);
         ++frame.waves;
@@ -127,9 +127,11 @@ Frame Renderer::render(const Progress& progress, bool time_stages) try {
         if (progress) going_on = progress(static_cast<double>(counts_.camera) / static_cast<double>(samples)) && going_on;
     }
 
-    Buffer<float> pixels(device_, pixel_channels(scene_));
+    Buffer<float> pixels(device_, film_pixels(scene_) * FILM_CHANNELS);
     stages_.resolve(film_, static_cast<uint>(scene_.settings.spp), pixels);
     frame.rgba = pixels.read(device_);
+    frame.samples_per_pixel = scene_.settings.spp;
+    frame.planes = planes_;
     frame.sums = film_.sums.read(device_);
     if (time_stages) clock.drain();
     const Counters counters = film_.counters.read_one(device_);
@@ -150,22 +152,39 @@ Frame Renderer::render(const Progress& progress, bool time_stages) try {
 void Renderer::trace(const Batch& batch) {
     const QueueRange<Ray> rays{queues_[static_cast<std::size_t>(batch.depth)], batch.first, batch.count};
     stages_.intersect(device_scene_, rays, hits_, film_);
+    show("intersect", batch);
     for (const SlotRange& slots : slot_ranges_) {
         stages_.shade(device_scene_, rays, hits_, slots, shadow_queue_, film_);
+        show("shade", batch, slots);
         stages_.shadow(device_scene_, shadow_queue_, Stages::chunks(batch.count) * slots.count, film_);
+        show("shadow", batch, slots);
     }
-    if (batch.depth == max_depth_) {
+    if (planes_.any_feature())
+        stages_.features(device_scene_, rays, static_cast<uint>(batch.depth), hits_, film_);
+    if (batch.depth == max_depth_)
         device_.queue.finish();
-        return;
-    }
-    const std::size_t next = static_cast<std::size_t>(batch.depth) + 1;
-    device_.queue.enqueueFillBuffer(film_.counters.memory(), cl_ulong{0}, offsetof(Counters, children), sizeof(cl_ulong));
-    stages_.secondary(device_scene_, rays, hits_, queues_[next], film_);
+    else
+        spawn(batch, rays);
+}
+
+void Renderer::spawn(const Batch& batch, QueueRange<Ray> rays) {
+    Buffer<Ray>& queue = queues_[static_cast<std::size_t>(batch.depth) + 1];
+    constexpr std::size_t counter = offsetof(Counters, children);
+    device_.queue.enqueueFillBuffer(film_.counters.memory(), cl_ulong{0}, counter, sizeof(cl_ulong));
+    stages_.secondary(device_scene_, rays, hits_, queue, film_);
     cl_ulong children = 0;
-    device_.queue.enqueueReadBuffer(film_.counters.memory(), CL_TRUE, offsetof(Counters, children), sizeof children,
-                                    &children);
+    device_.queue.enqueueReadBuffer(film_.counters.memory(), CL_TRUE, counter, sizeof children, &children);
     waves_.push(batch.depth + 1, children);
     counts_.secondary += children;
+    show("secondary", batch, {}, &queue, static_cast<uint>(children));
+}
+
+void Renderer::show(const char* stage, const Batch& batch, SlotRange slots, const Buffer<Ray>* children,
+                    uint children_count) const {
+    if (!observer_) return;
+    device_.queue.finish();
+    const QueueRange<Ray> rays{queues_[static_cast<std::size_t>(batch.depth)], batch.first, batch.count};
+    observer_(stage, {batch, rays, hits_, slots, shadow_queue_, children, children_count, film_});
 }
 
 }  // namespace raymill

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ namespace raymill {
 
 struct RenderOptions {
     MemoryRequest memory;
+    FilmPlanes planes;           // what the film keeps beside the beauty
     std::size_t work_group = 0;  // items; 0: what suits each stage
     std::string kernel_dir;      // empty: the embedded kernels
 };
@@ -36,7 +38,9 @@ struct StageTime {
 
 struct Frame {
     std::vector<float> rgba;         // of the crop window, row by row from the top
-    std::vector<cl_long> sums;       // the film's integers, FILM_CHANNELS a pixel
+    int samples_per_pixel = 1;
+    FilmPlanes planes;
+    std::vector<cl_long> sums;       // the film's integers: planes, in them pixels, in them FILM_CHANNELS
     RayCounts rays;
     std::uint64_t shadow_blocked = 0;
     std::uint64_t saturated = 0;     // film contributions that were cut
@@ -46,9 +50,26 @@ struct Frame {
     double finished = 1;             // share of the camera samples; less than 1 when interrupted
     std::vector<StageTime> stages;   // when timed
 
+    /// The integers of a plane that is kept.
+    std::span<const cl_long> plane(int plane) const;
     /// FNV-1a of the film's integers.
     std::uint64_t hash() const;
 };
+
+/// What the queues hold right after a stage of a wave. Valid during the call only.
+struct WaveView {
+    Batch batch;
+    QueueRange<Ray> rays;
+    const Buffer<Hit>& hits;
+    SlotRange slots;                   // light samples of this pass, for shade and shadow
+    const ShadowQueue& shadow_rays;    // as shade left it: segment = chunk * slots.count + slot
+    const Buffer<Ray>* children;       // after secondary
+    uint children_count;
+    const Film& film;
+};
+
+/// Called after each of "generate", "intersect", "shade", "shadow" and "secondary" has run, when the device is idle.
+using WaveObserver = std::function<void(const char* stage, const WaveView& view)>;
 
 /// Called between waves with the share of camera samples done; returns false to stop: rays already generated are
 /// finished, no more are.
@@ -61,14 +82,23 @@ class Renderer {
 
     const MemoryPlan& memory() const { return plan_; }
 
+    /// Shows every queue of the following frames to `observer`: slow, for explaining and verifying.
+    void observe(WaveObserver observer) { observer_ = std::move(observer); }
+    const DeviceScene& device_scene() const { return device_scene_; }
+    Stages& stages() { return stages_; }
+
     /// Renders one frame. time_stages: fills Frame::stages. Throws DeviceError, QueueOverflow.
     Frame render(const Progress& progress = {}, bool time_stages = false);
 
   private:
     void trace(const Batch& batch);
+    void spawn(const Batch& batch, QueueRange<Ray> rays);
+    void show(const char* stage, const Batch& batch, SlotRange slots = {}, const Buffer<Ray>* children = nullptr,
+              uint children_count = 0) const;
 
     const Device& device_;
     const Scene& scene_;
+    FilmPlanes planes_;
     MemoryPlan plan_;
     Stages stages_;
     DeviceScene device_scene_;
@@ -80,6 +110,7 @@ class Renderer {
     Film film_;
     std::vector<SlotRange> slot_ranges_;
     RayCounts counts_;
+    WaveObserver observer_;
 };
 
 }  // namespace raymill

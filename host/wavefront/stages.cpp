@@ -8,7 +8,7 @@ namespace raymill {
 
 namespace {
 
-const std::vector<std::string> kernel_files = {"generate.cl", "intersect.cl", "shade.cl",
+const std::vector<std::string> kernel_files = {"generate.cl", "intersect.cl", "shade.cl",  "features.cl",
                                                "shadow.cl",   "secondary.cl", "resolve.cl"};
 
 // Kernels of one item a work-item want groups that fill the vector units; those that loop over a chunk want none
@@ -36,6 +36,7 @@ Stages::Stages(const Device& device, std::size_t work_group, const std::string& 
     generate_ = stage("generate", item_group);
     intersect_ = stage("intersect", chunk_group);
     shade_ = stage("shade", chunk_group);
+    features_ = stage("features", chunk_group);
     shadow_ = stage("shadow", chunk_group);
     secondary_ = stage("secondary", chunk_group);
     resolve_ = stage("resolve", item_group);
@@ -74,6 +75,12 @@ void Stages::shade(const DeviceScene& scene, QueueRange<Ray> rays, const Buffer<
            scene.light_slots, scene.lights, scene.vertices, scene.triangles, scene.spheres, scene.planes,
            scene.materials, scene.textures, scene.texels, scene.constants, shadow_rays.rays, shadow_rays.counts,
            film.sums, film.counters);
+}
+
+void Stages::features(const DeviceScene& scene, QueueRange<Ray> rays, uint depth, const Buffer<Hit>& hits, Film& film) {
+    launch(features_, chunks(rays.count), rays.count, rays.items, rays.first, rays.count, depth, hits, scene.vertices,
+           scene.triangles, scene.spheres, scene.planes, scene.materials, scene.textures, scene.texels, scene.camera,
+           scene.constants, film.sums, film.counters);
 }
 
 void Stages::shadow(const DeviceScene& scene, const ShadowQueue& shadow_rays, uint segments, Film& film) {

@@ -24,7 +24,7 @@ struct ShadowQueue {
     Buffer<uint> counts;
 };
 
-/// Integer sums of every pixel of the rendered window, and what went wrong while adding.
+/// Integer sums of every plane and pixel of the rendered window, and what went wrong while adding.
 struct Film {
     Buffer<cl_long> sums;
     Buffer<Counters> counters;
@@ -50,6 +50,8 @@ class Stages {
     void intersect(const DeviceScene& scene, QueueRange<Ray> rays, Buffer<Hit>& hits, Film& film);
     void shade(const DeviceScene& scene, QueueRange<Ray> rays, const Buffer<Hit>& hits, SlotRange slots,
                ShadowQueue& shadow_rays, Film& film);
+    /// Adds to the planes of features that the scene's constants say are kept. All rays are of depth `depth`.
+    void features(const DeviceScene& scene, QueueRange<Ray> rays, uint depth, const Buffer<Hit>& hits, Film& film);
     void shadow(const DeviceScene& scene, const ShadowQueue& shadow_rays, uint segments, Film& film);
     /// Counts its children in film.counters.children, from the value it finds there.
     void secondary(const DeviceScene& scene, QueueRange<Ray> rays, const Buffer<Hit>& hits, Buffer<Ray>& children,
@@ -69,7 +71,7 @@ class Stages {
 
     const Device& device_;
     LaunchObserver observer_;
-    Stage generate_, intersect_, shade_, shadow_, secondary_, resolve_;
+    Stage generate_, intersect_, shade_, features_, shadow_, secondary_, resolve_;
 };
 
 }  // namespace raymill

@@ -18,23 +18,26 @@ static inline CameraSample camera_sample_at(ulong index, constant CameraRecord* 
     const ulong row_samples = (ulong)width * TILE * spp;
     const uint tile_y = (uint)(index / row_samples) * TILE;
     const uint rows = min((uint)TILE, height - tile_y);
-    const ulong in_row = index - (ulong)tile_y * width * spp;
+    const uint in_row = (uint)(index - (ulong)tile_y * width * spp);
 
     const uint full_tile = TILE * rows * spp;
-    const uint tile_x = (uint)(in_row / full_tile) * TILE;
+    const uint tile_x = in_row / full_tile * TILE;
     const uint columns = min((uint)TILE, width - tile_x);
-    const uint in_tile = (uint)(in_row - (ulong)(tile_x / TILE) * full_tile);
+    const uint in_tile = in_row % full_tile;
 
     const uint tile_pixels = columns * rows;
-    const uint in_sample = in_tile % tile_pixels;
-    const uint x = tile_x + in_sample % columns;
-    const uint y = tile_y + in_sample / columns;
+    const bool whole = tile_pixels == TILE * TILE;  // divisions by constants
+    const uint sample = whole ? in_tile / (TILE * TILE) : in_tile / tile_pixels;
+    const uint in_sample = in_tile - sample * tile_pixels;
+    const uint row = whole ? in_sample / TILE : in_sample / columns;
+    const uint x = tile_x + in_sample - row * columns;
+    const uint y = tile_y + row;
 
     CameraSample s;
     s.x = camera->crop[0] + x;
     s.y = camera->crop[1] + y;
     s.pixel = y * width + x;
-    s.sample = in_tile / tile_pixels;
+    s.sample = sample;
     s.path = path_camera(camera->seed, s.y * camera->width + s.x);
     return s;
 }
@@ -43,7 +46,7 @@ static inline CameraSample camera_sample_at(ulong index, constant CameraRecord* 
 /// through a point of the lens if there is one. direction is unit.
 static inline void camera_ray(constant CameraRecord* camera, CameraSample s, float3* origin, float3* direction) {
     const float2 jitter =
-        camera->spp == 1 ? (float2)(0.5f) : stratified_sample(s.sample, camera->spp, s.path, RANDOM_PIXEL);
+        camera->spp == 1 ? (float2)(0.5f) : stratified_sample(s.sample, s.path, RANDOM_PIXEL);
     const float x = fma(((float)s.x + jitter.x) / (float)camera->width, 2.0f, -1.0f);
     const float y = fma(((float)s.y + jitter.y) / (float)camera->height, -2.0f, 1.0f);
     const float3 eye = constant3(camera->eye), forward = constant3(camera->forward);
@@ -52,7 +55,7 @@ static inline void camera_ray(constant CameraRecord* camera, CameraSample s, flo
     float3 from = camera->orthographic ? eye + across : eye;
     float3 along = camera->orthographic ? forward : forward + across;
     if (camera->lens_radius > 0.0f) {
-        const float2 lens = concentric_disk(stratified_sample(s.sample, camera->spp, s.path, RANDOM_LENS));
+        const float2 lens = concentric_disk(stratified_sample(s.sample, s.path, RANDOM_LENS));
         const float3 shift =
             fma3(lens.x, unit3(constant3(camera->right)), unit3(constant3(camera->up)) * lens.y) * camera->lens_radius;
         from += shift;

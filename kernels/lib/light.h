@@ -88,7 +88,7 @@ static inline float3 light_point(global const LightRecord* light, float2 square)
 /// Sample `slot` of the scene's light samples, seen from p on this path of camera sample `sample`.
 /// `light_position` receives the sample's point, for shading at other points (Gouraud).
 static inline LightSample sample_light(global const LightRecord* light, uint index, uint light_sample, float3 p,
-                                       uint sample, uint spp, uint path, float3* light_position) {
+                                       uint sample, uint path, float3* light_position) {
     *light_position = load3(light->position);
     if (light->type == LIGHT_DIRECTIONAL) {
         LightSample s = {-load3(light->normal), INFINITY, load3(light->intensity) / (float)light->samples};
@@ -97,8 +97,7 @@ static inline LightSample sample_light(global const LightRecord* light, uint ind
     const bool extended = light->type >= LIGHT_RECTANGLE || light->radius > 0.0f;
     float2 square = (float2)(0.5f);
     if (extended)
-        square = stratified_sample(sample * light->samples + light_sample, spp * light->samples, path,
-                                   RANDOM_LIGHT + index);
+        square = stratified_sample(sample * light->samples + light_sample, path, RANDOM_LIGHT + index);
     if (light->type == LIGHT_SPHERE) {
         const LightSample s = from_sphere(light, p, square);
         *light_position = fma3(s.distance, s.direction, p);

@@ -132,10 +132,4 @@ static inline float3 absorbed(global const Material* material, const Surface* s,
     return throughput * exp_minus(load3(material->absorption) * t);
 }
 
-/// What the surface emits towards the ray.
-static inline float3 emitted(global const Material* material, const Surface* s) {
-    if (s->inside && (material->flags & MATERIAL_ONE_SIDED)) return (float3)(0.0f);
-    return load3(material->emission);
-}
-
 #endif

@@ -1,7 +1,8 @@
 // Counter-based random numbers: pure functions of integers, never of the slot a ray sits in or of the order of work.
 // Compiled by OpenCL C and by C++, and the one thing that the scalar reference shares with the kernels.
 // Sources: hash, Jarzynski and Olano, "Hash Functions for GPU Rendering" (JCGT 2020), pcg4d;
-//          strata, Kensler, "Correlated Multi-Jittered Sampling" (Pixar TM 13-01, 2013).
+//          strata, Burley, "Practical Hash-based Owen Scrambling" (JCGT 2020), with the hash of Vegdahl, "Building a
+//          Better LK Hash" (2021).
 #ifndef RAYMILL_RANDOM_H
 #define RAYMILL_RANDOM_H
 
@@ -50,61 +51,38 @@ RAYMILL_SHARED uint path_child(uint path, uint branch) { return hash4(path, bran
 /// Key of one family of stratified samples: those of all the pixel's camera samples for one purpose on one path.
 RAYMILL_SHARED uint random_key(uint path, uint dimension) { return hash4(path, dimension, 0x85ebca6bu, 2u); }
 
-/// A random permutation of [0, length) chosen by key, evaluated at i (Kensler, listing 3).
-RAYMILL_SHARED uint permute(uint i, uint length, uint key) {
-    uint w = length - 1u;
-    w |= w >> 1;
-    w |= w >> 2;
-    w |= w >> 4;
-    w |= w >> 8;
-    w |= w >> 16;
-    do {
-        i ^= key;
-        i *= 0xe170893du;
-        i ^= key >> 16;
-        i ^= (i & w) >> 4;
-        i ^= key >> 8;
-        i *= 0x0929eb3fu;
-        i ^= key >> 23;
-        i ^= (i & w) >> 1;
-        i *= 1u | key >> 27;
-        i *= 0x6935fa69u;
-        i ^= (i & w) >> 11;
-        i *= 0x74dcb303u;
-        i ^= (i & w) >> 2;
-        i *= 0x9e501cc3u;
-        i ^= (i & w) >> 2;
-        i *= 0xc860a3dfu;
-        i &= w;
-        i ^= i >> 5;
-    } while (i >= length);
-    return (i + key) % length;
+RAYMILL_SHARED uint reverse_bits(uint x) {
+    x = (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
+    x = (x >> 2 & 0x33333333u) | (x & 0x33333333u) << 2;
+    x = (x >> 4 & 0x0f0f0f0fu) | (x & 0x0f0f0f0fu) << 4;
+    x = (x >> 8 & 0x00ff00ffu) | (x & 0x00ff00ffu) << 8;
+    return x >> 16 | x << 16;
 }
 
-/// Number of columns of the grid that stratifies `count` samples: the largest divisor not above its square root gives
-/// the rows, so that every cell holds exactly one sample. count >= 1.
-RAYMILL_SHARED uint strata_columns(uint count) {
-    uint rows = 1u;
-    for (uint k = 2u; k * k <= count; ++k)
-        if (count % k == 0u) rows = k;
-    return count / rows;
+/// Owen scrambling of bits in reversed order: each bit is flipped by a hash of the bits below it (Vegdahl's constants).
+RAYMILL_SHARED uint scramble_reversed(uint x, uint key) {
+    x ^= x * 0x3d20adeau;
+    x += key;
+    x *= key >> 16 | 1u;
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
+    return x;
 }
 
-/// Sample `index` of `count` correlated multi-jittered points in the unit square, as 24-bit fixed-point coordinates:
-/// divide by 2^24 for [0, 1). Every column of the fine grid (count by count) and every coarse cell
-/// (columns by count / columns) holds exactly one point, up to the 24 bits. columns = strata_columns(count).
-RAYMILL_SHARED void stratified_point(uint index, uint count, uint columns, uint key, uint* x, uint* y) {
-    const uint rows = count / columns;
-    const uint s = permute(index % count, count, key * 0x51633e2du);
-    const uint column = s % columns;
-    const uint row = s / columns;
-    const uint shuffled_column = permute(column, columns, key * 0x68bc21ebu);
-    const uint shuffled_row = permute(row, rows, key * 0x02e5be93u);
-    const uint jitter_x = hash4(s, key, 0x967a889bu, 0u) >> 8;
-    const uint jitter_y = hash4(s, key, 0x368cc8b7u, 0u) >> 8;
-    // The coarse cell is (column, row); shuffling the other coordinate picks the fine column and row inside it.
-    *x = (uint)((((ulong)(column * rows + shuffled_row) << 24) + jitter_x) / count);
-    *y = (uint)((((ulong)(row * columns + shuffled_column) << 24) + jitter_y) / count);
+/// Point `index` of the family's Owen-scrambled (0, 2)-sequence in the unit square, as 24-bit fixed-point coordinates:
+/// divide by 2^24 for [0, 1). Of any 2^n points from a multiple of 2^n on, every cell of every grid of 2^n cells (2^n by
+/// 1, 2^(n-1) by 2, ...) holds exactly one, and no point depends on how many there are.
+RAYMILL_SHARED void stratified_point(uint index, uint key, uint* x, uint* y) {
+    const uint shuffled = reverse_bits(scramble_reversed(reverse_bits(index), key));
+    // The second generator matrix is Pascal's triangle modulo 2, which factors into five shifts.
+    uint second = shuffled;
+    second ^= second >> 1 & 0x55555555u;
+    second ^= second >> 2 & 0x33333333u;
+    second ^= second >> 4 & 0x0f0f0f0fu;
+    second ^= second >> 8 & 0x00ff00ffu;
+    second ^= second >> 16;
+    *x = reverse_bits(scramble_reversed(shuffled, key * 0x9e3779b9u + 0x68bc21ebu)) >> 8;
+    *y = reverse_bits(scramble_reversed(second, key * 0x85ebca6bu + 0x02e5be93u)) >> 8;
 }
 
 #ifndef __OPENCL_VERSION__

@@ -5,10 +5,10 @@
 #include "lib/math.h"
 #include "lib/random.h"
 
-/// Point `index` of `count` stratified points of [0, 1)^2 for one purpose (dimension) of one path.
-static inline float2 stratified_sample(uint index, uint count, uint path, uint dimension) {
+/// Point `index` of the stratified points of [0, 1)^2 for one purpose (dimension) of one path.
+static inline float2 stratified_sample(uint index, uint path, uint dimension) {
     uint x, y;
-    stratified_point(index, count, strata_columns(count), random_key(path, dimension), &x, &y);
+    stratified_point(index, random_key(path, dimension), &x, &y);
     return (float2)((float)x, (float)y) * 5.9604644775390625e-8f;  // 2^-24
 }
 

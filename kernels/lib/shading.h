@@ -29,10 +29,15 @@ static inline Shading shading_at(const World* world, global const Ray* ray, Hit 
     return s;
 }
 
-/// Ambient term and emission, weighted.
-static inline float3 unshadowed_radiance(const World* world, const Shading* s) {
-    const float3 ambient = load3(s->material->ambient) * constant3(world->constants->ambient) * s->local_share;
-    return s->throughput * (ambient + emitted(s->material, &s->surface));
+/// The ambient term, weighted by the blend and by the ray.
+static inline float3 ambient_radiance(const World* world, const Shading* s) {
+    return s->throughput * (load3(s->material->ambient) * constant3(world->constants->ambient) * s->local_share);
+}
+
+/// What the surface emits towards the ray, weighted by the ray alone. The back of a one-sided emitter is dark.
+static inline float3 emitted_radiance(const Shading* s) {
+    if (s->surface.inside && (s->material->flags & MATERIAL_ONE_SIDED)) return (float3)(0.0f);
+    return s->throughput * load3(s->material->emission);
 }
 
 /// Diffuse and specular answers, colours included, to one light sample.
@@ -80,7 +85,7 @@ static inline uint shade_light_sample(const World* world, const Shading* s, glob
                                       LightSlot slot, global ShadowRay* out) {
     float3 light_position;
     const LightSample sample = sample_light(light, slot.light, slot.sample, s->surface.position, s->ray->sample,
-                                            world->constants->spp, s->ray->path, &light_position);
+                                            s->ray->path, &light_position);
     if (!(dot3(sample.direction, s->surface.geometric_normal) > 0.0f)) return 0;
     const bool gouraud = (s->material->flags & MATERIAL_GOURAUD) && s->surface.triangle != NO_INDEX;
     const Answer answer =

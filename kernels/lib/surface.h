@@ -93,6 +93,14 @@ static inline uint material_of(const World* world, uint primitive) {
     return index < sphere_count ? world->spheres[index].material : world->planes[index - sphere_count].material;
 }
 
+/// Index of the object that a primitive belongs to.
+static inline uint object_of(const World* world, uint primitive) {
+    const uint triangle_count = world->constants->triangle_count, sphere_count = world->constants->sphere_count;
+    if (primitive < triangle_count) return world->triangles[primitive].object;
+    const uint index = primitive - triangle_count;
+    return index < sphere_count ? world->spheres[index].object : world->planes[index - sphere_count].object;
+}
+
 /// The surface where the ray met hit.primitive.
 static inline Surface surface_at(const World* world, float3 origin, float3 direction, Hit hit) {
     const uint triangle_count = world->constants->triangle_count;

@@ -302,13 +302,13 @@ TEST(full_disk, an_exr_that_does_not_fit_leaves_the_old_file_and_no_temporary) {
     const Image image = noise(64, 64);
     const TemporaryFolder folder;
     const std::string file = folder.file("out.exr");
-    write_exr(file, image, metadata_of(image), ExrPixels::float32);
+    write_exr(file, image, {}, metadata_of(image), ExrPixels::float32);
     const auto size = static_cast<rlim_t>(fs::file_size(file));
     write_text(file, "old");
     for (const rlim_t limit : {rlim_t{0}, rlim_t{100}, size / 2, size - 1}) {
         const std::string message = output_error([&] {
             const FileSizeLimit full(limit);
-            write_exr(file, image, metadata_of(image), ExrPixels::float32);
+            write_exr(file, image, {}, metadata_of(image), ExrPixels::float32);
         });
         EXPECT_NE(message.find("free some space"), std::string::npos) << message;
         EXPECT_EQ(read_bytes(file), "old") << limit;

@@ -53,7 +53,7 @@ std::vector<float> round_trip(const std::vector<float>& values, ExrPixels pixels
     const TemporaryFolder folder;
     Image image{static_cast<int>((values.size() + 3) / 4), 1, values};
     image.rgba.resize(4 * static_cast<std::size_t>(image.width));
-    write_exr(folder.file("a.exr"), image, metadata_of(image), pixels);
+    write_exr(folder.file("a.exr"), image, {}, metadata_of(image), pixels);
     std::vector<float> read = read_pixels(folder.file("a.exr"));
     read.resize(values.size());
     return read;
@@ -62,7 +62,7 @@ std::vector<float> round_trip(const std::vector<float>& values, ExrPixels pixels
 /// A file of one grey pixel.
 Imf::Header header_of(const ImageMetadata& metadata, ExrPixels pixels = ExrPixels::float32) {
     const TemporaryFolder folder;
-    write_exr(folder.file("a.exr"), Image{1, 1, {1, 1, 1, 1}}, metadata, pixels);
+    write_exr(folder.file("a.exr"), Image{1, 1, {1, 1, 1, 1}}, {}, metadata, pixels);
     return Imf::InputFile(folder.file("a.exr").c_str()).header();
 }
 
@@ -118,7 +118,7 @@ TEST(write_exr, rows_run_from_the_top_left) {
     const TemporaryFolder folder;
     Image image{5, 40, {}};  // more than the 16 rows of a compressed block
     for (int i = 0; i < 4 * 5 * 40; ++i) image.rgba.push_back(static_cast<float>(i));
-    write_exr(folder.file("a.exr"), image, metadata_of(image), ExrPixels::float32);
+    write_exr(folder.file("a.exr"), image, {}, metadata_of(image), ExrPixels::float32);
     EXPECT_EQ(read_pixels(folder.file("a.exr")), image.rgba);
 }
 
@@ -132,7 +132,7 @@ TEST(write_exr, a_crop_lies_in_the_data_window_of_the_whole_image) {
     metadata.x0 = 100;
     metadata.y0 = 478;
     for (const ExrPixels pixels : {ExrPixels::float32, ExrPixels::half16}) {
-        write_exr(folder.file("a.exr"), image, metadata, pixels);
+        write_exr(folder.file("a.exr"), image, {}, metadata, pixels);
         const Imf::Header header = Imf::InputFile(folder.file("a.exr").c_str()).header();
         EXPECT_EQ(header.displayWindow(), Imath::Box2i({0, 0}, {639, 479}));
         EXPECT_EQ(header.dataWindow(), Imath::Box2i({100, 478}, {102, 479}));
@@ -194,9 +194,9 @@ TEST(write_exr, files_of_two_runs_differ_in_the_render_time_alone) {
     const Image image{2, 2, std::vector<float>(16, 0.3f)};
     ImageMetadata metadata = metadata_of(image);
     metadata.render_seconds = 1;
-    write_exr(folder.file("a.exr"), image, metadata, ExrPixels::float32);
+    write_exr(folder.file("a.exr"), image, {}, metadata, ExrPixels::float32);
     metadata.render_seconds = 2;
-    write_exr(folder.file("b.exr"), image, metadata, ExrPixels::float32);
+    write_exr(folder.file("b.exr"), image, {}, metadata, ExrPixels::float32);
     const std::string a = read_bytes(folder.file("a.exr"));
     std::string b = read_bytes(folder.file("b.exr"));
     ASSERT_EQ(a.size(), b.size());
@@ -211,15 +211,15 @@ TEST(write_exr, files_of_two_runs_differ_in_the_render_time_alone) {
 TEST(write_exr, leaves_nothing_beside_the_file) {
     const TemporaryFolder folder;
     const Image image{1, 1, {1, 2, 3, 4}};
-    write_exr(folder.file("a.exr"), image, metadata_of(image), ExrPixels::float32);
-    write_exr(folder.file("a.exr"), image, metadata_of(image), ExrPixels::half16);
+    write_exr(folder.file("a.exr"), image, {}, metadata_of(image), ExrPixels::float32);
+    write_exr(folder.file("a.exr"), image, {}, metadata_of(image), ExrPixels::half16);
     EXPECT_EQ(folder.entries(), 1);
 }
 
 TEST(write_exr, a_missing_folder_is_an_output_error) {
     const TemporaryFolder folder;
     const Image image{1, 1, {1, 2, 3, 4}};
-    EXPECT_THROW(write_exr(folder.file("no/a.exr"), image, metadata_of(image), ExrPixels::float32), OutputError);
+    EXPECT_THROW(write_exr(folder.file("no/a.exr"), image, {}, metadata_of(image), ExrPixels::float32), OutputError);
     EXPECT_THROW(write_png(folder.file("no/a.png"), image, 0), OutputError);
     EXPECT_EQ(folder.entries(), 0);
 }

@@ -40,23 +40,23 @@ TEST(CameraRay, the_view_is_upright_for_a_camera_that_looks_down_a_slope) {
 
 TEST(CameraRay, many_samples_of_a_pixel_lie_one_in_each_stratum) {
     SceneBuilder b = frontal(4, 4);
-    b.scene.settings.spp = 9;
+    b.scene.settings.spp = 16;
     const Tracer tracer(b.scene);
     std::set<int> columns, rows, cells;
-    for (std::uint32_t sample = 0; sample < 9; ++sample) {
+    for (std::uint32_t sample = 0; sample < 16; ++sample) {
         const dvec3 d = tracer.camera_ray(2, 1, sample).direction;
         const dvec2 film(d.x / -d.z, d.y / -d.z);
         // In the pixel: x in [0, 0.5), y in (0, 0.5] on the film. 1e-7 covers the 24 bits of the point.
         const double fx = film.x * 2 + 1e-7;
         const double fy = 1 - film.y * 2 + 1e-7;
         ASSERT_TRUE(fx >= 0 && fx < 1 && fy >= 0 && fy < 1);
-        columns.insert(static_cast<int>(fx * 9));
-        rows.insert(static_cast<int>(fy * 9));
-        cells.insert(static_cast<int>(fx * 3) + 3 * static_cast<int>(fy * 3));
+        columns.insert(static_cast<int>(fx * 16));
+        rows.insert(static_cast<int>(fy * 16));
+        cells.insert(static_cast<int>(fx * 4) + 4 * static_cast<int>(fy * 4));
     }
-    EXPECT_EQ(columns.size(), 9u);
-    EXPECT_EQ(rows.size(), 9u);
-    EXPECT_EQ(cells.size(), 9u);
+    EXPECT_EQ(columns.size(), 16u);
+    EXPECT_EQ(rows.size(), 16u);
+    EXPECT_EQ(cells.size(), 16u);
 }
 
 TEST(CameraRay, orthographic_rays_are_parallel_and_a_full_height_apart) {
@@ -89,7 +89,7 @@ TEST(CameraRay, all_rays_of_a_lens_meet_in_the_plane_in_focus_and_start_on_the_l
             expect_near(at_focus(ray), at_focus(through_pinhole), rounding * 10);  // coordinates up to 5
             const dvec3 on_lens = ray.origin - through_pinhole.origin;
             const std::uint32_t key = random_key(path_camera(0, 2), RANDOM_LENS);  // pixel (2, 0)
-            const dvec2 disk = 0.25 * concentric_disk(stratified_square(sample, 16, key));
+            const dvec2 disk = 0.25 * concentric_disk(stratified_square(sample, key));
             expect_near(on_lens, {disk.x, disk.y, 0}, rounding);
             EXPECT_LE(glm::length(on_lens), 0.25 + rounding);
             off_centre = off_centre || glm::length(on_lens) > 0.125;

@@ -173,26 +173,29 @@ TEST(UniformSphere, spreads_heights_evenly_over_the_unit_sphere) {
     }
 }
 
-TEST(StratifiedSquare, holds_one_point_in_every_row_column_and_cell) {
-    for (const std::uint32_t count : {1u, 4u, 7u, 12u, 64u}) {
-        const std::uint32_t columns = strata_columns(count);
-        const std::uint32_t rows = count / columns;
-        std::vector<int> in_column(count), in_row(count), in_cell(count);
-        for (std::uint32_t i = 0; i < count; ++i) {
-            const dvec2 p = stratified_square(i, count, 0x1234567u);
-            ASSERT_TRUE(p.x >= 0 && p.x < 1 && p.y >= 0 && p.y < 1);
-            // Half of the last of the 24 bits: an edge of a stratum may round down by less than that.
-            const dvec2 q = p + std::ldexp(0.999, -24);
-            ++in_column[static_cast<std::size_t>(q.x * count)];
-            ++in_row[static_cast<std::size_t>(q.y * count)];
-            ++in_cell[static_cast<std::size_t>(q.y * rows) * columns + static_cast<std::size_t>(q.x * columns)];
-        }
-        for (std::uint32_t i = 0; i < count; ++i) {
-            EXPECT_EQ(in_column[i], 1);
-            EXPECT_EQ(in_row[i], 1);
-            EXPECT_EQ(in_cell[i], 1);
+// Niederreiter, "Low-Discrepancy and Low-Dispersion Sequences", 1988: the elementary intervals of a (0, 2)-sequence.
+TEST(StratifiedSquare, holds_one_point_in_every_cell_of_every_grid_of_a_power_of_two) {
+    for (const std::uint32_t log_count : {0u, 1u, 2u, 3u, 6u, 10u}) {
+        const std::uint32_t count = 1u << log_count;
+        for (const std::uint32_t first : {0u, 3 * count}) {
+            for (std::uint32_t log_columns = 0; log_columns <= log_count; ++log_columns) {
+                const std::uint32_t columns = 1u << log_columns, rows = count / columns;
+                std::vector<int> in_cell(count);
+                for (std::uint32_t i = first; i < first + count; ++i) {
+                    const dvec2 p = stratified_square(i, 0x1234567u);
+                    ASSERT_TRUE(p.x >= 0 && p.x < 1 && p.y >= 0 && p.y < 1);
+                    ++in_cell[static_cast<std::size_t>(p.y * rows) * columns + static_cast<std::size_t>(p.x * columns)];
+                }
+                for (const int points : in_cell) EXPECT_EQ(points, 1);
+            }
         }
     }
+}
+
+TEST(StratifiedSquare, differs_between_families) {
+    int equal = 0;
+    for (std::uint32_t key = 0; key < 1000; ++key) equal += stratified_square(0, key) == stratified_square(0, key + 1);
+    EXPECT_EQ(equal, 0);
 }
 
 }  // namespace

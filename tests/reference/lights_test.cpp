@@ -93,7 +93,7 @@ TEST(LightSampleNumber, counts_through_the_camera_samples_in_a_family_of_its_own
     const LightSample s = Tracer(b.scene).sample_light(1, 2, {0, -2, 0}, 1, 77);
     const dvec3 on_light = dvec3(0, -2, 0) + s.distance * s.direction;
     // Light sample 2 of camera sample 1: number 1 * 3 + 2 of 2 * 3; the edges are those of the unit square.
-    const dvec2 ab = stratified_square(5, 6, random_key(77, RANDOM_LIGHT + 1));
+    const dvec2 ab = stratified_square(5, random_key(77, RANDOM_LIGHT + 1));
     expect_near(on_light, {ab.x - 0.5, 0, ab.y - 0.5}, rounding);
 }
 
