@@ -1,9 +1,12 @@
 #include "kernel_rig.hpp"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
+#include <optional>
 
 #include "device/program.hpp"
 #include "wavefront/stages.hpp"
@@ -17,14 +20,48 @@ std::string kernel_folder() {
     return folder ? folder : "";
 }
 
+/// What all tests of a program share. Released when the tests have run, not when statics are: an implementation of
+/// OpenCL may have gone by then.
+class Shared : public testing::Environment {
+  public:
+    const Device& device() {
+        if (!device_) device_.emplace(open_device("", 0));
+        return *device_;
+    }
+    Stages& stages() {
+        if (!stages_) stages_.emplace(device(), 0, kernel_folder());
+        return *stages_;
+    }
+    const cl::Program& probe(const std::string& file) {
+        const std::string folder = kernel_folder().empty() ? RAYMILL_SOURCE_DIR "/kernels" : kernel_folder();
+        if (!probes_.contains(file)) {
+            const std::filesystem::path path = RAYMILL_SOURCE_DIR "/tests/kernels/" + file;
+            const std::string name_in_folder = std::filesystem::relative(path, folder).string();
+            probes_.emplace(file, build_program(device(), {name_in_folder}, folder));
+        }
+        return probes_.at(file);
+    }
+    void TearDown() override {
+        probes_.clear();
+        stages_.reset();
+        device_.reset();
+    }
+
+  private:
+    std::optional<Device> device_;
+    std::optional<Stages> stages_;
+    std::map<std::string, cl::Program> probes_;
+};
+
+// GoogleTest owns it.
+Shared* const shared = static_cast<Shared*>(testing::AddGlobalTestEnvironment(std::make_unique<Shared>().release()));
+
 const Device& device() {
-    static const Device opened = open_device("", 0);
-    return opened;
+    return shared->device();
 }
 
 Stages& stages() {
-    static Stages built(device(), 0, kernel_folder());
-    return built;
+    return shared->stages();
 }
 
 /// An output buffer of the kernel: `capacity` items and the guards.
@@ -127,14 +164,7 @@ std::vector<float> resolve_on_device(std::span<const std::int64_t> sums, uint sp
 
 std::vector<uint> run_probe(const std::string& file, const char* name, const std::vector<std::vector<uint>>& inputs,
                             uint items, uint selector, std::size_t output_words) {
-    const std::string folder = kernel_folder().empty() ? RAYMILL_SOURCE_DIR "/kernels" : kernel_folder();
-    static std::map<std::string, cl::Program> programs;
-    if (!programs.contains(file)) {
-        const std::filesystem::path path = RAYMILL_SOURCE_DIR "/tests/kernels/" + file;
-        const std::string name_in_folder = std::filesystem::relative(path, folder).string();
-        programs.emplace(file, build_program(device(), {name_in_folder}, folder));
-    }
-    cl::Kernel kernel = make_kernel(programs.at(file), name);
+    cl::Kernel kernel = make_kernel(shared->probe(file), name);
     std::vector<Buffer<uint>> buffers;
     cl_uint index = 0;
     for (const std::vector<uint>& input : inputs) {
