@@ -5,6 +5,7 @@
 #include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfRgbaFile.h>
+#include <ImfTileDescriptionAttribute.h>
 
 #include <cstring>
 #include <limits>
@@ -43,15 +44,14 @@ Imf::Slice float_slice(float* base, const Imath::Box2i& window, std::size_t widt
     return Imf::Slice::Make(Imf::FLOAT, base, window, x_stride, width * x_stride);
 }
 
-void read_channels(Imf::InputFile& file, const Imath::Box2i& window, TextureImage& image) {
-    const bool grey = !file.header().channels().findChannel("R");
+void read_channels(Imf::InputFile& file, const std::vector<std::string>& names, const Imath::Box2i& window,
+                   TextureImage& image) {
     Imf::FrameBuffer frame;
-    const char* names[] = {"R", "G", "B"};
-    for (int c = 0; c < (grey ? 1 : 3); ++c)
-        frame.insert(grey ? "Y" : names[c], float_slice(&image.texels[0][c], window, image.width));
+    for (std::size_t c = 0; c < names.size(); ++c)
+        frame.insert(names[c], float_slice(&image.texels[0][static_cast<int>(c)], window, image.width));
     file.setFrameBuffer(frame);
     file.readPixels(window.min.y, window.max.y);
-    if (grey)
+    if (names.size() == 1)
         for (glm::vec3& texel : image.texels) texel = glm::vec3(texel.x);
 }
 
@@ -70,27 +70,50 @@ void read_luminance_chroma(MemoryStream& stream, const Imath::Box2i& window, Tex
     }
 }
 
+/// The data window of the file's first part, checked before OpenEXR asks for memory and time in proportion to it.
+Imath::Box2i checked_data_window(MemoryStream& stream, std::size_t file_bytes, TextureImage& image) {
+    char magic_and_version[8];
+    stream.read(magic_and_version, sizeof magic_and_version);
+    int version = static_cast<unsigned char>(magic_and_version[4]);
+    for (int i = 1; i < 4; ++i) version |= static_cast<unsigned char>(magic_and_version[4 + i]) << 8 * i;
+    Imf::Header header;
+    header.readFrom(stream, version);
+    stream.seekg(0);
+    const Imath::Box2i window = header.dataWindow();
+    const double width = double(window.max.x) - window.min.x + 1, height = double(window.max.y) - window.min.y + 1;
+    check_texture_size(width, height, file_bytes);
+    // Scan lines come in blocks of 256 at most, each with eight bytes in the table of offsets.
+    if (!header.hasTileDescription() && height / 256 * 8 > double(file_bytes))
+        throw std::runtime_error("its table of lines is longer than the file");
+    image.width = static_cast<std::uint32_t>(width);
+    image.height = static_cast<std::uint32_t>(height);
+    return window;
+}
+
+/// R, G and B, or the one channel that stands for grey; none where luminance comes with chroma.
+std::vector<std::string> plain_channels(const Imf::ChannelList& channels) {
+    if (channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B")) return {"R", "G", "B"};
+    if (channels.findChannel("RY") && channels.findChannel("BY")) return {};
+    if (channels.findChannel("Y")) return {"Y"};
+    auto first = channels.begin();
+    if (first != channels.end() && ++channels.begin() == channels.end()) return {first.name()};
+    throw std::runtime_error("it has neither the channels R, G, B nor Y");
+}
+
 }  // namespace
 
 TextureImage decode_exr(const std::string& bytes, const std::string& name) {
     MemoryStream stream(bytes, name);
+    TextureImage image{name, 0, 0, {}};
+    const Imath::Box2i window = checked_data_window(stream, bytes.size(), image);
     Imf::InputFile file(stream, 0);
-    const Imath::Box2i window = file.header().dataWindow();
-    const double width = double(window.max.x) - window.min.x + 1, height = double(window.max.y) - window.min.y + 1;
-    check_texture_size(width, height, bytes.size());
-    TextureImage image{name, std::uint32_t(width), std::uint32_t(height), {}};
+    const std::vector<std::string> channels = plain_channels(file.header().channels());
     image.texels.resize(std::size_t{image.width} * image.height);
-
-    const Imf::ChannelList& channels = file.header().channels();
-    const bool has_rgb = channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B");
-    const bool has_chroma = channels.findChannel("RY") && channels.findChannel("BY");
-    if (has_rgb || (channels.findChannel("Y") && !has_chroma)) {
-        read_channels(file, window, image);
-    } else if (channels.findChannel("Y")) {
+    if (channels.empty()) {
         stream.seekg(0);
         read_luminance_chroma(stream, window, image);
     } else {
-        throw std::runtime_error("it has neither the channels R, G, B nor Y");
+        read_channels(file, channels, window, image);
     }
     return image;
 }

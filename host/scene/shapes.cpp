@@ -71,6 +71,23 @@ class MeshBuilder {
     }
 };
 
+/// Where the profile meets the axis like a cone, under more than `degrees` from one side to the other, the tip has no
+/// normal of its own: each face gets back its own there.
+void crease_tips(IndexedMesh& mesh, const glm::dvec3& center, double degrees) {
+    for (auto& triangle : mesh.triangles)
+        for (int c = 0; c < 3; ++c) {
+            const glm::dvec3& tip = mesh.positions[triangle[c].position];
+            if (tip.x != center.x || tip.z != center.z) continue;
+            const glm::dvec3 a = mesh.positions[triangle[(c + 1) % 3].position] - tip;
+            const glm::dvec3 b = mesh.positions[triangle[(c + 2) % 3].position] - tip;
+            const glm::dvec3 normal = glm::normalize(glm::cross(a, b));
+            const double fold = 2 * glm::degrees(std::acos(std::min(1.0, std::abs(normal.y))));
+            if (fold <= degrees) continue;
+            triangle[c].normal = static_cast<std::uint32_t>(mesh.normals.size());
+            mesh.normals.push_back(normal);
+        }
+}
+
 }  // namespace
 
 IndexedMesh disk_mesh(const glm::dvec3& center, const glm::dvec3& normal, double radius) {
@@ -199,6 +216,7 @@ IndexedMesh lathe_mesh(const LatheShape& shape) {
         }
     builder.mesh.normals.clear();
     smooth_by_angle(builder.mesh, shape.smooth_angle);
+    crease_tips(builder.mesh, shape.center, shape.smooth_angle);
     builder.mesh.chord_error = chord_error(widest, shape.segments);
     return std::move(builder.mesh);
 }

@@ -7,7 +7,10 @@
 namespace raymill {
 
 Transform::Transform(const glm::dmat4& matrix)
-    : linear_(matrix), offset_(matrix[3]), inverse_transpose_(glm::transpose(glm::inverse(linear_))) {}
+    : identity_(matrix == glm::dmat4(1)),
+      linear_(matrix),
+      offset_(matrix[3]),
+      inverse_transpose_(glm::transpose(glm::inverse(linear_))) {}
 
 glm::dvec3 Transform::normal(const glm::dvec3& n) const {
     const glm::dvec3 transformed = inverse_transpose_ * n;

@@ -12,7 +12,8 @@ class Transform {
     Transform() = default;
     explicit Transform(const glm::dmat4& matrix);
 
-    glm::dvec3 point(const glm::dvec3& p) const { return linear_ * p + offset_; }
+    /// Without a transform p itself, so that one infinite coordinate does not spoil the others.
+    glm::dvec3 point(const glm::dvec3& p) const { return identity_ ? p : linear_ * p + offset_; }
     /// Unit normal by the inverse transpose; zero for a zero or not finite normal. Outside stays outside.
     glm::dvec3 normal(const glm::dvec3& n) const;
     /// Whether left and right are swapped, so that a counter-clockwise face becomes clockwise.
@@ -23,6 +24,7 @@ class Transform {
     double largest_stretch() const;
 
   private:
+    bool identity_ = true;
     glm::dmat3 linear_{1};
     glm::dvec3 offset_{0};
     glm::dmat3 inverse_transpose_{1};
