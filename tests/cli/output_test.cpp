@@ -70,6 +70,11 @@ TEST_F(Output, that_cannot_be_written_is_status_1) {
     EXPECT_EQ(folder_.entries(), 2);
 }
 
+TEST_F(Output, on_a_standard_output_that_is_full_is_status_1) {
+    for (const std::vector<std::string>& arguments : {std::vector<std::string>{"devices"}, {"check", scene_}})
+        expect_failure(run_raymill(arguments, {.standard_output = "/dev/full"}), 1, "standard output");
+}
+
 TEST_F(Output, replaces_an_older_file_and_leaves_nothing_beside_it) {
     write_text(folder_.file("picture.exr"), "older");
     EXPECT_EQ(render_to("picture.exr").status, 0);

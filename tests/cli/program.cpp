@@ -85,7 +85,8 @@ Outcome run_raymill(const std::vector<std::string>& arguments, const Surrounding
     if (pid < 0) throw std::system_error(errno, std::generic_category(), "fork");
     if (pid == 0) {
         redirect(STDIN_FILENO, "/dev/null", O_RDONLY);
-        redirect(STDOUT_FILENO, out, O_WRONLY | O_CREAT);
+        const bool elsewhere = !surroundings.standard_output.empty();
+        redirect(STDOUT_FILENO, elsewhere ? surroundings.standard_output : out, O_WRONLY | O_CREAT);
         redirect(STDERR_FILENO, err, O_WRONLY | O_CREAT);
         if (terminal && ::dup2(terminal->theirs, STDERR_FILENO) < 0) ::_exit(126);
         if (terminal) ::close(terminal->theirs), ::close(terminal->ours);
@@ -94,7 +95,7 @@ Outcome run_raymill(const std::vector<std::string>& arguments, const Surrounding
     Outcome outcome;
     if (terminal) outcome.err = read_terminal(*terminal, pid, surroundings);
     outcome.status = wait_for(pid);
-    outcome.out = read_bytes(out);
+    if (surroundings.standard_output.empty()) outcome.out = read_bytes(out);
     if (!terminal) outcome.err = read_bytes(err);
     return outcome;
 }

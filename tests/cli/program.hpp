@@ -16,6 +16,7 @@ struct Outcome {
 
 struct Surroundings {
     std::string folder{};                              // to run in; empty: this one
+    std::string standard_output{};                     // a file that receives it in place of Outcome::out
     std::map<std::string, std::string> environment{};  // added to this one's
     // Standard error is a terminal, and this is called with all that has appeared there whenever there is more.
     std::function<void(int pid, const std::string& terminal)> watch_terminal{};
