@@ -197,6 +197,9 @@ void read_model(Loading& loading, const std::string& file) {
 }
 
 std::string model_scene_toml(const std::string& model_file) {
+    if (extension_of(model_file) != ".obj")
+        throw SceneError({model_file},
+                         "a bare model (.obj) is what a scene file is made for; a scene file is one already");
     Loading loading;
     loading.scene.materials.emplace_back();
     read_model(loading, model_file);
