@@ -167,6 +167,13 @@ static inline Hit closest_hit_after(const Geometry* geometry, float3 origin, flo
     return query.best;
 }
 
+/// The closest hit among the infinite planes alone.
+static inline Hit closest_plane(const Geometry* geometry, float3 origin, float3 direction, float t_max) {
+    Query query = {origin, direction, {0.0f, 0.0f, 0.0f, NO_INDEX}, {t_max, 0.0f, 0.0f, NO_INDEX}};
+    visit_planes(geometry, &query);
+    return query.best;
+}
+
 static inline Hit closest_hit(const Geometry* geometry, float3 origin, float3 direction) {
     const Hit start = {0.0f, 0.0f, 0.0f, NO_INDEX};
     return closest_hit_after(geometry, origin, direction, start, INFINITY);
