@@ -18,12 +18,12 @@ static inline CameraSample camera_sample_at(ulong index, constant CameraRecord* 
     const ulong row_samples = (ulong)width * TILE * spp;
     const uint tile_y = (uint)(index / row_samples) * TILE;
     const uint rows = min((uint)TILE, height - tile_y);
-    const uint in_row = (uint)(index - (ulong)tile_y * width * spp);
+    const ulong in_row = index - (ulong)tile_y * width * spp;  // a row of tiles may hold more than 2^32
 
     const uint full_tile = TILE * rows * spp;
-    const uint tile_x = in_row / full_tile * TILE;
+    const uint tile_x = (uint)(in_row / full_tile) * TILE;
     const uint columns = min((uint)TILE, width - tile_x);
-    const uint in_tile = in_row % full_tile;
+    const uint in_tile = (uint)(in_row - (ulong)(tile_x / TILE) * full_tile);
 
     const uint tile_pixels = columns * rows;
     const bool whole = tile_pixels == TILE * TILE;  // divisions by constants

@@ -133,14 +133,24 @@ TEST_P(Generate, a_split_into_batches_changes_no_bit) {
 INSTANTIATE_TEST_SUITE_P(Views, Generate, testing::ValuesIn(views), testing::PrintToStringParamName());
 
 TEST(GenerateOfManySamples, the_last_of_more_than_2_to_the_32_samples_is_the_last_pixel_s) {
-    Scene scene = scene_of(views[0]);
-    scene.settings.width = 4099;
-    scene.settings.height = 4097;
-    scene.settings.spp = 300;
-    const std::uint64_t total = std::uint64_t{4099} * 4097 * 300;
-    const auto rays = KernelRig(scene).generate(total - 1, 1);
-    EXPECT_EQ(rays[0].pixel, 4099u * 4097u - 1);
-    EXPECT_EQ(rays[0].sample, 299u);
+    struct Size {
+        int width, height, spp;
+    };
+    for (const Size& size :
+         {Size{4099, 4097, 300}, Size{640, 9, 1 << 20}}) {  // of the second, a row of tiles holds more
+        Scene scene = scene_of(views[0]);
+        scene.settings.width = size.width;
+        scene.settings.height = size.height;
+        scene.settings.spp = size.spp;
+        const auto pixels = static_cast<uint>(size.width * size.height);
+        const KernelRig rig(scene);
+        const Ray last = rig.generate(std::uint64_t{pixels} * static_cast<uint>(size.spp) - 1, 1)[0];
+        EXPECT_EQ(last.pixel, pixels - 1);
+        EXPECT_EQ(last.sample, static_cast<uint>(size.spp - 1));
+        const auto width = static_cast<uint>(size.width);
+        const Ray corner = rig.generate(std::uint64_t{TILE} * width * static_cast<uint>(size.spp) - 1, 1)[0];
+        EXPECT_EQ(corner.pixel, TILE * width - 1);
+    }
 }
 
 }  // namespace
