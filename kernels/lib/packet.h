@@ -26,6 +26,7 @@ typedef struct {
     uint sign[3];  // of the slab frame, the same for all rays
     float3 lower_origin, upper_origin, lower_inverse, upper_inverse;
     float3 lower_direction, upper_direction;
+    float3 margin;  // what rounding may take from or add to a distance to a plane, at most
     float farthest;  // largest best_t
     uint count;
     bool uniform;  // all rays have the same axes and signs
@@ -34,6 +35,7 @@ typedef struct {
 static inline void packet_start(Packet* p) {
     p->lower_origin = p->lower_inverse = p->lower_direction = (float3)(INFINITY);
     p->upper_origin = p->upper_inverse = p->upper_direction = (float3)(-INFINITY);
+    p->margin = (float3)(0.0f);
     p->farthest = -1.0f;
     p->count = 0;
     p->uniform = true;
@@ -74,6 +76,8 @@ static inline void packet_add(Packet* p, float3 origin, float3 direction, Hit be
     p->upper_inverse = fmax(p->upper_inverse, slabs.inverse);
     p->lower_direction = fmin(p->lower_direction, direction);
     p->upper_direction = fmax(p->upper_direction, direction);
+    // near and far are an error of three roundings apart from the middle, each rounded once more; planes add two.
+    p->margin = fmax(p->margin, 2.0f * (slabs.far - slabs.near));
 }
 
 /// Fills the missing rays; false if the rays are better traced one by one.
@@ -118,7 +122,8 @@ static inline float8 interval(const Packet* p, global const BvhNode* node, uint 
     const float origin = component(upper ? p->lower_origin : p->upper_origin, axis);
     const float8 distance = vload8(0, node->bounds[upper ? 1 : 0][axis]) - origin;
     const float8 a = distance * component(p->lower_inverse, axis), b = distance * component(p->upper_inverse, axis);
-    return near ? min8(a, b) : max8(a, b);
+    const float margin = component(p->margin, axis);
+    return near ? min8(a, b) - margin : max8(a, b) + margin;
 }
 
 /// Children that some ray of the packet may meet, and where the first ray can enter them.
@@ -127,7 +132,7 @@ static inline uint interval_children(const Packet* p, global const BvhNode* node
                               max8(interval(p, node, 2, 1), (float8)(0.0f)));
     const float8 leave = min8(min8(interval(p, node, 0, 0), interval(p, node, 1, 0)),
                               min8(interval(p, node, 2, 0), (float8)(p->farthest)));
-    // Two roundings on each side, and as many to spare; far from the origin the differences are exact enough.
+    // No later than group_meets() and enter_triangle_group() say for any ray: those have the margin, and these 4 roundings.
     *entry = enter * (1.0f - 4.0f * ROUNDING);
     return lane_mask(*entry <= leave * (1.0f + 8.0f * ROUNDING));
 }
@@ -142,6 +147,19 @@ static inline bool group_meets(const Packet* p, global const BvhNode* node, uint
         leave = min16(fma((float16)(node->bounds[1 - p->sign[axis]][axis][lane]), inverse, far), leave);
     }
     return any16(enter <= leave * (1.0f + 8.0f * ROUNDING));
+}
+
+/// Where the rays of a group enter the bounds of one triangle: enter_triangles() in triangle.h.
+static inline float16 enter_triangle_group(const Packet* p, global const TriangleBlock* block, uint lane, uint group) {
+    float16 enter = (float16)(0.0f);
+    for (uint axis = 0; axis < 3; ++axis) {
+        const float16 inverse = vload16(group, p->inverse[axis]), near = vload16(group, p->near[axis]);
+        const float16 a = fma((float16)(block->position[0][axis][lane]), inverse, near);
+        const float16 b = fma((float16)(block->position[1][axis][lane]), inverse, near);
+        const float16 c = fma((float16)(block->position[2][axis][lane]), inverse, near);
+        enter = max16(min16(min16(a, b), c), enter);
+    }
+    return enter;
 }
 
 /// Rays of a group that hit one triangle nearer than their best so far; replaces it. The arithmetic is that of
@@ -173,9 +191,7 @@ static inline bool visit_triangle_group(Packet* p, global const TriangleBlock* b
     const float16 shear_z = vload16(group, p->shear[2]);
     const float16 distance = fma(ua, az, fma(va, bz, wa * cz)) * shear_z * inverse;
     const float16 best_t = vload16(group, p->best_t);
-    const uint primitive = block->primitive[lane];
-    const int16 first = (distance < best_t) | ((distance == best_t) & (primitive < vload16(group, p->best_primitive)));
-    hit &= first & (det != 0.0f);
+    hit &= (distance <= best_t) & (det != 0.0f);
     if (!any16(hit)) return false;
 
     const float16 x16 = max16(max16(fabs(ax), fabs(bx)), fabs(cx));
@@ -185,6 +201,9 @@ static inline bool visit_triangle_group(Packet* p, global const TriangleBlock* b
     const float16 delta_e = 2.0f * ROUNDING * (2.0f * x16 * y16 + 5.0f * ((y16 + z16) * x16 + (x16 + z16) * y16));
     const float16 delta = 3.0f * (6.0f * ROUNDING * e + delta_e) * z16 * fabs(shear_z) * fabs(inverse);
     hit &= distance > delta;
+    const float16 t = max16(enter_triangle_group(p, block, lane, group), distance);
+    const uint primitive = block->primitive[lane];
+    hit &= (t < best_t) | ((t == best_t) & (primitive < vload16(group, p->best_primitive)));
 
     uint on_edge = lane_mask16(hit & ((ua == 0.0f) | (va == 0.0f) | (wa == 0.0f)));
     if (on_edge != 0) {
@@ -205,7 +224,7 @@ static inline bool visit_triangle_group(Packet* p, global const TriangleBlock* b
     }
     if (!any16(hit)) return false;
     vstore16(select(vload16(group, p->best_primitive), (uint16)(primitive), hit), group, p->best_primitive);
-    vstore16(select(best_t, any_hit ? (float16)(-1.0f) : distance, hit), group, p->best_t);
+    vstore16(select(best_t, any_hit ? (float16)(-1.0f) : t, hit), group, p->best_t);
     vstore16(select(vload16(group, p->best_u), va * inverse, hit), group, p->best_u);
     vstore16(select(vload16(group, p->best_v), wa * inverse, hit), group, p->best_v);
     return true;
@@ -218,7 +237,8 @@ static inline bool visit_spheres_group(Packet* p, global const SphereBlock* bloc
     for (uint i = group * GROUP; i < (group + 1) * GROUP; ++i) {
         if (p->best_t[i] < 0.0f) continue;
         Query query = {origins[i], directions[i], {0.0f, 0.0f, 0.0f, NO_INDEX}, {p->best_t[i], 0.0f, 0.0f, p->best_primitive[i]}};
-        visit_spheres(block, &query);
+        const SlabFrame slabs = slab_frame(origins[i], directions[i]);
+        visit_spheres(block, &slabs, &query);
         if (query.best.primitive == p->best_primitive[i]) continue;
         found = true;
         p->best_t[i] = any_hit ? -1.0f : query.best.t;
