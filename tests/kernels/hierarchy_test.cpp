@@ -38,6 +38,52 @@ std::vector<Ray> rays_through(const Scene& scene, std::size_t count, std::uint32
     return rays;
 }
 
+/// Chunks of rays that a kernel may trace together: from one point, or exactly parallel to an axis through vertices and
+/// points around them.
+std::vector<Ray> coherent_rays(const Scene& scene, std::size_t count, std::uint32_t seed) {
+    Random random(seed);
+    std::vector<Ray> rays;
+    for (const Ray& first : rays_through(scene, count / CHUNK, seed)) {
+        const glm::vec3 origin = vec3_of(first.origin), direction = vec3_of(first.direction);
+        const bool parallel = random.below(2) && !scene.vertices.empty();
+        const uint axis = random.below(3);
+        const float sign = random.below(2) ? 1.0f : -1.0f;
+        for (uint i = 0; i < CHUNK; ++i) {
+            glm::vec3 from = origin, along = glm::normalize(direction + 0.02f * random.in_cube(-1, 1));
+            if (parallel) {
+                from = vec3_of(scene.vertices[random.below(static_cast<uint>(scene.vertices.size()))].position);
+                from[static_cast<int>(axis)] = origin[static_cast<int>(axis)];
+                // Half of the chunks lie in one plane, in which sides of boxes lie as well.
+                if (i > 0 && rays.size() / CHUNK % 2) {
+                    const int across = static_cast<int>((axis + 1) % 3);
+                    from[across] = rays.back().origin[across];
+                }
+                along = glm::vec3(axis == 0, axis == 1, axis == 2) * sign;
+            }
+            if (std::isfinite(from.x + from.y + from.z)) rays.push_back(make_ray(from, along));
+        }
+    }
+    return rays;
+}
+
+/// Whether each ray hits the same alone in a crowd of others as among its like.
+void expect_company_not_to_matter(const Scene& scene, std::uint32_t seed) {
+    const std::vector<Ray> rays = coherent_rays(scene, 32768, seed);
+    const std::size_t stride = 4099;  // a prime that divides no number of rays here
+    std::vector<Ray> mixed;
+    for (std::size_t i = 0; i < rays.size(); ++i) mixed.push_back(rays[i * stride % rays.size()]);
+    const auto together = KernelRig(scene).intersect(rays).hits;
+    const auto apart = KernelRig(scene).intersect(mixed).hits;
+    const auto each = KernelRig(scene, uncullable_bvh(scene)).intersect(mixed).hits;
+    std::size_t wrong = 0, culled = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        wrong += !same_bits(together[i * stride % rays.size()], apart[i]);
+        culled += !same_bits(each[i], apart[i]);
+    }
+    EXPECT_EQ(wrong, 0u);
+    EXPECT_EQ(culled, 0u);
+}
+
 void expect_same_hits(const Scene& scene, std::size_t count, std::uint32_t seed) {
     const std::vector<Ray> rays = rays_through(scene, count, seed);
     const auto through = KernelRig(scene).intersect(rays).hits;
@@ -127,6 +173,27 @@ TEST(Hierarchy, finds_the_same_hits_beside_triangles_without_area_and_with_nan) 
 
 TEST(Hierarchy, finds_the_same_hits_in_a_million_triangles) {
     expect_same_hits(scene_of(uneven_sheet(708)), 500, 16);
+}
+
+TEST(Hierarchy, company_does_not_matter_in_random_triangles) {
+    expect_company_not_to_matter(scene_of(random_soup(2000, 18)), 18);
+}
+TEST(Hierarchy, company_does_not_matter_in_a_sheet) {
+    expect_company_not_to_matter(scene_of(uneven_sheet(30)), 19);
+}
+TEST(Hierarchy, company_does_not_matter_in_coincident_sheets) {
+    expect_company_not_to_matter(scene_of(coincident_sheets()), 20);
+}
+TEST(Hierarchy, company_does_not_matter_in_slivers) {
+    expect_company_not_to_matter(scene_of(slivers(1000, 21)), 21);
+}
+TEST(Hierarchy, company_does_not_matter_on_a_closed_mesh_around_the_origin) {
+    expect_company_not_to_matter(scene_of(icosphere(4, 1, {0, 0, 0})), 22);
+}
+TEST(Hierarchy, company_does_not_matter_in_triangles_and_spheres) {
+    Mesh mesh = random_soup(800, 23);
+    mesh.spheres = random_spheres(800, 24).spheres;
+    expect_company_not_to_matter(scene_of(mesh), 23);
 }
 
 TEST(Hierarchy, of_coincident_primitives_the_lowest_id_is_hit) {
