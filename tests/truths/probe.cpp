@@ -1,5 +1,7 @@
 #include "probe.hpp"
 
+#include <unistd.h>
+
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -121,8 +123,7 @@ void add_ruler(SceneBuilder& builder, const glm::vec3& corner, const glm::vec3& 
 }
 
 Scene scene_of(const std::string& toml) {
-    const std::string name =
-        std::string("raymill-truth-") + testing::UnitTest::GetInstance()->current_test_info()->name() + ".toml";
+    const std::string name = "raymill-truth-" + std::to_string(getpid()) + ".toml";  // tests may run side by side
     const std::filesystem::path file = std::filesystem::temp_directory_path() / name;
     std::ofstream(file) << toml;
     Scene scene = load_scene(file.string());
