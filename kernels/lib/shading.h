@@ -104,8 +104,10 @@ static inline uint shade_light_sample(const World* world, const Shading* s, glob
     float3 light_position;
     const LightSample sample = sample_light(light, slot.light, slot.sample, s->surface.position, s->ray->sample,
                                             s->ray->path, &light_position);
-    // Below the geometric surface there is no light; of a smooth mesh that surface is the curved one.
-    if (!s->surface.smooth && !(dot3(sample.direction, s->surface.geometric_normal) > 0.0f)) return 0;
+    // Below the geometric surface there is no light. Of a smooth mesh that surface is the curved one, and its shadow rays
+    // find out; without shadows the guard stays.
+    const bool guarded = !s->surface.smooth || world->constants->shadows == SHADOWS_NONE;
+    if (guarded && !(dot3(sample.direction, s->surface.geometric_normal) > 0.0f)) return 0;
     const bool gouraud = (s->material->flags & MATERIAL_GOURAUD) && s->surface.triangle != NO_INDEX;
     const Answer answer =
         gouraud ? gouraud_answer(world, s, light, sample, light_position) : phong_answer(s, sample);
