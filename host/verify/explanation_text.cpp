@@ -28,6 +28,9 @@ Units operator+(const Units& a, const Units& b) {
     return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
 }
 
+// Levels beyond it are not moved further to the right, so that lines stay short; each ray tells its depth.
+constexpr int deepest_indent = 8;
+
 class Writer {
   public:
     Writer(const Truth& truth, const RayTree& tree) : truth_(truth), tree_(tree), slots_(light_slots(truth.scene)) {}
@@ -58,7 +61,7 @@ class Writer {
   private:
     template <class... Arguments>
     void line(int level, fmt::format_string<Arguments...> format, Arguments&&... arguments) {
-        out_ += std::string(2 * static_cast<std::size_t>(level), ' ');
+        out_ += std::string(2 * static_cast<std::size_t>(std::min(level, deepest_indent)), ' ');
         out_ += fmt::format(format, std::forward<Arguments>(arguments)...);
         out_ += '\n';
     }
@@ -152,7 +155,8 @@ class Writer {
         if (arrived == passage.blocker.has_value())
             line(level, "the kernel finds it {}: within rounding of an edge, or a defect; raymill verify tells",
                  arrived ? "visible" : "blocked");
-        line(level, "adds diffuse {}, specular {}", text(item.arrived.diffuse), text(item.arrived.specular));
+        line(level, "adds diffuse {}", text(item.arrived.diffuse));
+        line(level, "adds specular {}", text(item.arrived.specular));
     }
 
     Units write_children(const RayNode& node, const HitContext& context, int level) {
@@ -173,12 +177,12 @@ class Writer {
 
     void write_snell(const HitContext& context, int level) {
         const Snell snell = snell_at(truth_, context);
-        const std::string indices =
-            fmt::format("Snell: n1 {}, n2 {}, theta1 {} degrees", text(snell.n1), text(snell.n2), text(snell.incident));
+        const std::string indices = fmt::format("Snell, angles in degrees: n1 {}, n2 {}, theta1 {}", text(snell.n1),
+                                                text(snell.n2), text(snell.incident));
         if (snell.refracted)
-            line(level, "{}, theta2 {} degrees", indices, text(*snell.refracted));
+            line(level, "{}, theta2 {}", indices, text(*snell.refracted));
         else
-            line(level, "{}: total reflection, past the critical angle of {} degrees", indices, text(snell.critical));
+            line(level, "{}, critical {}: total reflection", indices, text(snell.critical));
     }
 
     Units write_child(std::optional<std::size_t> child, double share, const char* kind, int level) {

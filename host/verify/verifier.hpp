@@ -12,7 +12,7 @@ namespace raymill::verify {
 struct VerifyOptions {
     /// Ray and primitive pairs that the reference may test for intersect and for shadow each, since it tests all
     /// primitives for every ray. Beyond it, an evenly spread subset of the items is compared.
-    std::uint64_t primitive_tests = 3'000'000'000;
+    std::uint64_t primitive_tests = 500'000'000;
 };
 
 /// Renders the frame twice, the first time to count its rays. The renderer must keep ledger_planes().

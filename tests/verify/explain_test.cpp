@@ -77,7 +77,7 @@ TEST(Explain, the_text_says_how_the_sum_compares_and_how_branches_end) {
     EXPECT_EQ(count_of(text, "): equal\n"), 1u);
     EXPECT_GE(count_of(text, "refracted ray, depth 1"), 1u);
     EXPECT_GE(count_of(text, "ends: the recursion limit is 3"), 1u);
-    EXPECT_GE(count_of(text, "Snell: n1 1, n2 1.5"), 1u);
+    EXPECT_GE(count_of(text, "n1 1, n2 1.5, theta1"), 1u);
     EXPECT_GE(count_of(text, "sphere \"ball of glass\", material \"glass\""), 1u);
 }
 
