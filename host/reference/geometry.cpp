@@ -116,7 +116,8 @@ Surface Tracer::surface(const Ray& ray, const Hit& hit) const {
             s.uv += weights[k] * dvec2(vertex.uv[0], vertex.uv[1]);
         }
         const double length = glm::length(normal);
-        s.shading_normal = is_flat(hit.primitive) || length == 0 ? s.geometric_normal : normal / length;
+        s.smooth = !is_flat(hit.primitive) && length > 0;
+        s.shading_normal = s.smooth ? normal / length : s.geometric_normal;
         s.material = triangle.material;
         s.object = triangle.object;
     } else if ((i -= corners_.size()) < scene_.spheres.size()) {
@@ -136,6 +137,30 @@ Surface Tracer::surface(const Ray& ray, const Hit& hit) const {
     }
     s.inside = glm::dot(ray.direction, s.geometric_normal) > 0;
     return s;
+}
+
+// Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, 2021, chapter 4.
+dvec3 Tracer::smooth_lift(const Hit& hit, const Surface& surface) const {
+    const dvec3 weights(1 - hit.u - hit.v, hit.u, hit.v);
+    dvec3 lift(0);
+    for (int k = 0; k < 3; ++k) {
+        const Vertex& vertex = scene_.vertices[scene_.triangles[hit.primitive].vertex[k]];
+        const dvec3 normal = (surface.inside ? -1.0 : 1.0) * glm::normalize(to_dvec3(vertex.normal));
+        lift += weights[k] * std::max(0.0, -glm::dot(surface.position - corners_[hit.primitive][k], normal)) * normal;
+    }
+    return lift;
+}
+
+Ray Tracer::shadow_ray(const Ray& ray, const Hit& hit, const Surface& surface, const LightSample& light) const {
+    Ray shadow = spawn(ray, hit, surface, light.direction);
+    if (!surface.smooth) return shadow;
+    const dvec3 lift = smooth_lift(hit, surface);
+    shadow.origin += lift;
+    // Towards the same point of the light, at the same multiple of the direction.
+    if (std::isfinite(light.distance)) shadow.direction -= lift / light.distance;
+    // From above, the triangle itself may stand in the way.
+    if (glm::dot(shadow.direction, (surface.inside ? -1.0 : 1.0) * surface.geometric_normal) < 0) shadow.from = NO_INDEX;
+    return shadow;
 }
 
 Ray Tracer::spawn(const Ray& ray, const Hit& hit, const Surface& surface, const dvec3& direction) const {

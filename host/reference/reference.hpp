@@ -43,6 +43,7 @@ struct Surface {
     dvec2 uv{0};  // zero on spheres, planes and triangles without texture coordinates
     std::uint32_t material = 0;
     std::uint32_t object = 0;
+    bool smooth = false;  // the shading normal is interpolated from the vertices
     bool inside = false;  // the ray arrives from behind the outward geometric normal
 };
 
@@ -86,6 +87,10 @@ class Tracer {
     /// The ray that leaves a hit in a unit direction.
     Ray spawn(const Ray& ray, const Hit& hit, const Surface& surface, const dvec3& direction) const;
 
+    /// The ray towards a light sample. On smooth triangles it starts on the curved surface that the vertex normals
+    /// describe, so that a coarse mesh casts no steps of shadow on itself.
+    Ray shadow_ray(const Ray& ray, const Hit& hit, const Surface& surface, const LightSample& light) const;
+
     /// What a ray of this unit direction brings home when it misses: background and environment lights.
     dvec3 background(const dvec3& direction) const;
     /// k_d with texture and checker. The checker replaces the plain colour, the texture multiplies either.
@@ -119,6 +124,7 @@ class Tracer {
 
     const SceneMaterial& material_of(std::uint32_t primitive) const;
     bool is_flat(std::uint32_t primitive) const;
+    dvec3 smooth_lift(const Hit& hit, const Surface& surface) const;
     LightSample light_at_vertex(std::uint32_t light, const LightSample& at_hit, const dvec3& p,
                                 const dvec3& vertex) const;
     LocalTerms gouraud_terms(const Ray& ray, const Hit& hit, const Surface& surface, std::uint32_t light,

@@ -76,7 +76,8 @@ LocalTerms Tracer::local_terms(const Ray& ray, const Hit& hit, const Surface& su
                                std::uint32_t light_sample, std::uint32_t sample, std::uint32_t path) const {
     const LightSample at_hit = sample_light(light, light_sample, surface.position, sample, path);
     const double side = surface.inside ? -1 : 1;
-    if (!(glm::dot(at_hit.direction, side * surface.geometric_normal) > 0)) return {};
+    // Below the geometric surface there is no light; of a smooth mesh that surface is the curved one.
+    if (!surface.smooth && !(glm::dot(at_hit.direction, side * surface.geometric_normal) > 0)) return {};
     const SceneMaterial& material = scene_.materials[surface.material];
     const bool triangle = hit.primitive < corners_.size();
     if (material.shading == Shading::gouraud && triangle) {

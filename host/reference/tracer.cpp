@@ -48,7 +48,7 @@ dvec3 Tracer::direct_light(const Ray& ray, const Hit& hit, const Surface& surfac
             const dvec3 unshadowed = terms.diffuse + terms.specular;
             if (unshadowed == dvec3(0)) continue;
             const LightSample s = sample_light(light, i, surface.position, sample, path);
-            sum += unshadowed * visibility(spawn(ray, hit, surface, s.direction), s.shadow_distance);
+            sum += unshadowed * visibility(shadow_ray(ray, hit, surface, s), s.shadow_distance);
         }
     }
     return sum;

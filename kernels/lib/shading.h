@@ -73,11 +73,29 @@ static inline Answer gouraud_answer(const World* world, const Shading* s, global
             at_vertex.direction = unit3(light_position - p);
         const float3 to_eye = any(origin != p) ? unit3(origin - p) : s->to_eye;
         const float2 terms = phong_terms(s->material, n, at_vertex.direction, to_eye);
+        if (terms.x == 0.0f) continue;  // I_in is not a number where the light lies on the vertex
         diffuse_light = fma3(weights[corner] * terms.x, at_vertex.incoming, diffuse_light);
         specular_light = fma3(weights[corner] * terms.y, at_vertex.incoming, specular_light);
     }
     const Answer a = {s->diffuse * diffuse_light, load3(s->material->specular) * specular_light};
     return a;
+}
+
+/// The segment from the hit to the light sample. Where the surface is smooth it starts above the triangle.
+static inline void aim_shadow_ray(const World* world, const Shading* s, global const LightRecord* light,
+                                  LightSample sample, float3 light_position, global ShadowRay* out) {
+    float3 origin = leave_surface(world, &s->surface, 1.0f);
+    if (s->surface.smooth && world->constants->robust_offset) {
+        origin += smooth_lift(world, &s->surface);
+        if (light->type != LIGHT_DIRECTIONAL) {
+            const float3 to_light = light_position - origin;
+            sample.distance = length3(to_light);
+            sample.direction = to_light / sample.distance;
+        }
+    }
+    store3(out->origin, origin);
+    store3(out->direction, sample.direction);
+    out->t_max = sample.distance * LIGHT_REACH;
 }
 
 /// Writes the shadow ray of one light sample and returns 1; returns 0 if the sample cannot add anything.
@@ -86,7 +104,8 @@ static inline uint shade_light_sample(const World* world, const Shading* s, glob
     float3 light_position;
     const LightSample sample = sample_light(light, slot.light, slot.sample, s->surface.position, s->ray->sample,
                                             s->ray->path, &light_position);
-    if (!(dot3(sample.direction, s->surface.geometric_normal) > 0.0f)) return 0;
+    // Below the geometric surface there is no light; of a smooth mesh that surface is the curved one.
+    if (!s->surface.smooth && !(dot3(sample.direction, s->surface.geometric_normal) > 0.0f)) return 0;
     const bool gouraud = (s->material->flags & MATERIAL_GOURAUD) && s->surface.triangle != NO_INDEX;
     const Answer answer =
         gouraud ? gouraud_answer(world, s, light, sample, light_position) : phong_answer(s, sample);
@@ -94,9 +113,7 @@ static inline uint shade_light_sample(const World* world, const Shading* s, glob
     const float3 diffuse = weight * answer.diffuse, specular = weight * answer.specular;
     if (!any(diffuse != 0.0f) && !any(specular != 0.0f)) return 0;
 
-    store3(out->origin, leave_surface(world, &s->surface, 1.0f));
-    store3(out->direction, sample.direction);
-    out->t_max = sample.distance * LIGHT_REACH;
+    aim_shadow_ray(world, s, light, sample, light_position, out);
     out->pixel = s->ray->pixel;
     out->route = s->ray->route;
     out->light = slot.light;

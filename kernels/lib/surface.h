@@ -26,6 +26,7 @@ typedef struct {
     float3 weights;  // barycentric
     uint triangle;   // NO_INDEX: a sphere or a plane
     uint material;
+    bool smooth;     // the shading normal is interpolated from the vertices
     bool inside;     // the ray came from behind the outward normal
 } Surface;
 
@@ -62,7 +63,8 @@ static inline void triangle_surface(const World* world, Hit hit, uint shading_fl
     if (shading_flags & MATERIAL_FLAT) return;
     if (!has_normals(world, triangle)) return;
     const float3 smooth = interpolate(load3(a->normal), load3(b->normal), load3(c->normal), s->weights);
-    if (dot3(smooth, smooth) > 0.0f) s->shading_normal = unit3(smooth);
+    s->smooth = dot3(smooth, smooth) > 0.0f;
+    if (s->smooth) s->shading_normal = unit3(smooth);
 }
 
 static inline void sphere_surface(const World* world, uint index, float3 hit_point, Surface* s) {
@@ -108,6 +110,7 @@ static inline Surface surface_at(const World* world, float3 origin, float3 direc
     Surface s;
     s.material = material_of(world, hit.primitive);
     s.triangle = NO_INDEX;
+    s.smooth = false;
     s.uv = (float2)(0.0f);
     s.weights = (float3)(1.0f, 0.0f, 0.0f);
     if (hit.primitive < triangle_count) {
@@ -126,6 +129,22 @@ static inline Surface surface_at(const World* world, float3 origin, float3 direc
         s.shading_normal = -s.shading_normal;
     }
     return s;
+}
+
+/// From the hit to the curved surface that the vertex normals describe, on the side that the ray came from: shadow rays of
+/// smooth triangles start there, so that a coarse mesh casts no steps of shadow on itself at the terminator.
+/// Source: Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, 2021, chapter 4.
+static inline float3 smooth_lift(const World* world, const Surface* s) {
+    global const Triangle* triangle = world->triangles + s->triangle;
+    const float weights[3] = {s->weights.x, s->weights.y, s->weights.z};
+    float3 lift = (float3)(0.0f);
+    for (uint corner = 0; corner < 3; ++corner) {
+        global const Vertex* vertex = world->vertices + triangle->vertex[corner];
+        const float3 normal = unit3(load3(vertex->normal)) * (s->inside ? -1.0f : 1.0f);
+        const float below = dot3(s->position - load3(vertex->position), normal);
+        lift = fma3(weights[corner] * fmax(-below, 0.0f), normal, lift);
+    }
+    return lift;
 }
 
 /// Where a ray must start to leave the surface on the side that the ray came from, or (side < 0) on the other.

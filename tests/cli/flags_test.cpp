@@ -1,0 +1,140 @@
+// Flags: what they accept, what they refuse, and what they do to the picture.
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfIntAttribute.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "exr_pixels.hpp"
+#include "image/temporary_folder.hpp"
+#include "program.hpp"
+
+namespace raymill {
+namespace {
+
+class Flags : public testing::Test {
+  protected:
+    Flags() { write_text(scene_, small_scene()); }
+
+    Outcome check(std::vector<std::string> flags) {
+        flags.insert(flags.begin(), {"check", scene_});
+        return run_raymill(flags);
+    }
+    Picture render(const std::vector<std::string>& flags) {
+        std::vector<std::string> arguments = {"render", scene_, "-o", folder_.file("picture.exr")};
+        arguments.insert(arguments.end(), flags.begin(), flags.end());
+        const Outcome outcome = run_raymill(arguments);
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        EXPECT_EQ(outcome.out, "");
+        return read_picture(folder_.file("picture.exr"));
+    }
+
+    const TemporaryFolder folder_;
+    const std::string scene_ = folder_.file("scene.toml");
+};
+
+TEST_F(Flags, that_make_no_sense_are_refused_by_name) {
+    const std::vector<std::vector<std::string>> senseless = {
+        {"--size", "640"},         {"--size", "0x10"},        {"--size", "10x-1"},    {"--size", "8x8x8"},
+        {"--size", "99999x1"},     {"--size", "ax8"},         {"--size", "8.5x8"},    {"--crop", "0,1,0"},
+        {"--crop", "0,1,0,2"},     {"--crop", "0.5,0.5,0,1"}, {"--crop", "1,0,0,1"},  {"--crop", "a,1,0,1"},
+        {"--crop", "nan,1,0,1"},   {"--mem-limit", "lots"},   {"--mem-limit", "12Q"}, {"--mem-limit", "0"},
+        {"--mem-limit", "-5M"},    {"--mem-limit", ""},       {"--spp", "0"},         {"--depth", "-1"},
+        {"--queue-capacity", "0"}, {"--work-group", "0"},     {"--threads", "0"},     {"--integrator", "magic"},
+        {"--exposure", "inf"},     {"--seed", "-1"}};
+    for (const auto& flag : senseless) {
+        SCOPED_TRACE(flag[0] + " '" + flag[1] + "'");
+        // With an equals sign, so that a value that begins with a minus is one.
+        expect_failure(check({flag[0] + "=" + flag[1]}), 2, flag[0]);
+    }
+}
+
+TEST_F(Flags, say_the_size) {
+    const Outcome outcome = check({"--size", "31x17", "--spp", "3", "--depth", "2"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_TRUE(contains(outcome.out, "31 x 17 pixels, 3 spp, depth 2")) << outcome.out;
+    const Picture picture = render({"--size", "31x17", "--spp", "3"});
+    EXPECT_EQ(picture.width, 31);
+    EXPECT_EQ(picture.height, 17);
+    EXPECT_EQ(picture.header.typedAttribute<Imf::IntAttribute>("raymill:samplesPerPixel").value(), 3);
+}
+
+TEST_F(Flags, say_the_memory_with_and_without_units) {
+    for (const char* size : {"1000000", "1M", "1MiB", "1MB", "0.5G", "1T"}) {
+        const Outcome outcome = check({"--mem-limit", size});
+        EXPECT_EQ(outcome.status, 0) << size << ": " << outcome.err;
+        EXPECT_TRUE(contains(outcome.out, "memory")) << outcome.out;
+    }
+    const Outcome too_small = check({"--mem-limit", "1K"});
+    EXPECT_EQ(too_small.status, 1);
+    EXPECT_TRUE(contains(too_small.err, "1.0 KiB of --mem-limit")) << too_small.err;
+    expect_failure(run_raymill({"render", scene_, "-o", folder_.file("a.exr"), "--mem-limit", "1K"}), 1, "--mem-limit");
+}
+
+TEST_F(Flags, cut_the_picture_without_changing_what_is_left) {
+    const Picture whole = render({"--spp", "2"}), part = render({"--spp", "2", "--crop", "0.25,0.75,0.1,0.6"});
+    EXPECT_EQ(part.x0, 6);  // ceil(0.25 * 24)
+    EXPECT_EQ(part.y0, 2);  // ceil(0.1 * 18)
+    EXPECT_EQ(part.width, 12);
+    EXPECT_EQ(part.height, 9);
+    EXPECT_EQ(part.header.displayWindow(), whole.header.displayWindow());
+    for (int y = part.y0; y < part.y0 + part.height; ++y)
+        for (int x = part.x0; x < part.x0 + part.width; ++x)
+            for (int channel = 0; channel < 4; ++channel)
+                ASSERT_EQ(part.at(x, y)[channel], whole.at(x, y)[channel]) << x << ", " << y;
+}
+
+TEST_F(Flags, of_a_crop_between_two_pixels_are_refused) {
+    expect_failure(run_raymill({"render", scene_, "--crop", "0.01,0.02,0,1", "-o", folder_.file("a.exr")}), 2,
+                   "--crop");
+    EXPECT_EQ(folder_.entries(), 1);  // the scene
+}
+
+TEST_F(Flags, of_the_device_do_not_change_the_picture) {
+    const Picture plain = render({});
+    EXPECT_TRUE(same_pixels(plain, render({"--queue-capacity", "7", "--work-group", "8", "--threads", "1"})));
+    EXPECT_TRUE(same_pixels(plain, render({"--mem-limit", "1M", "--kernel-dir", RAYMILL_KERNELS})));
+    EXPECT_FALSE(same_pixels(plain, render({"--depth", "0"})));
+}
+
+TEST_F(Flags, of_aovs_add_layers_and_leave_the_picture_alone) {
+    const Picture plain = render({}), layered = render({"--aov", "diffuse,N,Z"});
+    EXPECT_TRUE(same_pixels(plain, layered));
+    for (const char* channel : {"diffuse.R", "N.X", "N.Z", "R", "A"})
+        EXPECT_TRUE(layered.header.channels().findChannel(channel)) << channel;
+    EXPECT_FALSE(plain.header.channels().findChannel("diffuse.R"));
+    EXPECT_FALSE(layered.header.channels().findChannel("specular.R"));
+    expect_failure(run_raymill({"render", scene_, "-o", folder_.file("a.exr"), "--aov", "shine"}), 2, "shine");
+}
+
+TEST_F(Flags, of_half_floats_round_the_picture_a_little) {
+    const Picture full = render({}), half = render({"--half"});
+    EXPECT_FALSE(same_pixels(full, half));
+    for (std::size_t i = 0; i < full.rgba.size(); ++i)
+        ASSERT_NEAR(half.rgba[i], full.rgba[i], full.rgba[i] / 2048 + 1e-7);  // 11 significant bits
+}
+
+TEST_F(Flags, of_an_unknown_device_are_status_1) {
+    expect_failure(run_raymill({"render", scene_, "-o", folder_.file("a.exr"), "--device", "abacus"}), 1, "abacus");
+    expect_failure(run_raymill({"render", scene_, "-o", folder_.file("a.exr"), "--threads", "65536"}), 1, "--threads");
+    expect_failure(run_raymill({"render", scene_, "-o", folder_.file("a.exr"), "--work-group", "1048576"}), 1,
+                   "--work-group");
+    EXPECT_EQ(folder_.entries(), 1);
+}
+
+TEST_F(Flags, of_statistics_print_a_row_for_every_kernel_on_standard_error) {
+    const Outcome outcome = run_raymill({"render", scene_, "-o", folder_.file("a.exr"), "--stats"});
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(outcome.out, "");
+    for (const char* part : {"generate", "intersect", "shade", "shadow", "secondary", "432 camera", "film hash"})
+        EXPECT_TRUE(contains(outcome.err, part)) << outcome.err << "\nwithout " << part;
+}
+
+TEST_F(Flags, of_silence_leave_nothing_to_read) {
+    const Outcome outcome = run_raymill({"render", scene_, "-o", folder_.file("a.exr"), "--quiet"});
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(outcome.out + outcome.err, "");
+}
+
+}  // namespace
+}  // namespace raymill
