@@ -34,6 +34,8 @@ int run(int argc, char** argv) {
     const std::pair<const char*, Command> commands[] = {{"render", add_render_command(app)},
                                                         {"check", add_check_command(app)},
                                                         {"devices", add_devices_command(app)},
+                                                        {"explain", add_explain_command(app)},
+                                                        {"verify", add_verify_command(app)},
                                                         {"scene", add_scene_command(app)}};
     try {
         app.parse(argc, argv);

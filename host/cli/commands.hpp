@@ -12,6 +12,8 @@ using Command = std::function<int()>;
 Command add_render_command(CLI::App& app);
 Command add_check_command(CLI::App& app);
 Command add_devices_command(CLI::App& app);
+Command add_explain_command(CLI::App& app);
+Command add_verify_command(CLI::App& app);
 Command add_scene_command(CLI::App& app);
 
 }  // namespace raymill

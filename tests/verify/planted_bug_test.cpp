@@ -1,0 +1,73 @@
+// Kernels with one mistake each: verify must find it, and in the right stage.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "frame.hpp"
+
+namespace raymill::verify {
+namespace {
+
+struct PlantedBug {
+    const char* name;
+    const char* file;
+    const char* right;
+    const char* wrong;
+    const char* stage;
+};
+
+void PrintTo(const PlantedBug& bug, std::ostream* out) {
+    *out << bug.name;
+}
+
+const PlantedBug bugs[] = {
+    {"pixel_offset", "lib/camera.h", "((float)s.y + jitter.y)", "((float)s.y + jitter.x)", "generate"},
+    {"wrong_triangle_weight", "lib/triangle.h", "*u = va * inverse", "*u = wa * inverse", "intersect"},
+    {"far_end_of_spheres", "lib/sphere.h", "select(far, near, near > t_min)", "far", "intersect"},
+    {"no_attenuation", "lib/light.h", "return 1.0f / fma(", "return 1.0f; return fma(", "shade"},
+    {"attenuation_off_by_1e_5", "lib/light.h", "return 1.0f / fma(", "return 1.00001f / fma(", "shade"},
+    {"no_offset", "lib/surface.h", "if (!world->constants->robust_offset) return s->position;", "return s->position;",
+     "shade"},
+    {"filter_without_transmission", "shadow.cl", " * filter->transmission", "", "shadow"},
+    {"mirrored_sign", "lib/material.h", "fma3(-2.0f * dot3(direction, n), n, direction)",
+     "fma3(2.0f * dot3(direction, n), n, direction)", "secondary"},
+    {"inverse_index", "lib/material.h", "fma3(-cosine, n, direction) / eta", "fma3(-cosine, n, direction) * eta",
+     "secondary"},
+    {"half_of_fresnel", "lib/material.h", "return 0.5f * (parallel", "return 0.25f * (parallel", "secondary"},
+    {"children_share_a_path", "secondary.cl", "path_child(parent->path, branch)", "path_child(parent->path, 0)",
+     "secondary"},
+    {"green_counted_as_red", "lib/film.h", "film_add_units(film, beauty + 1, g)", "film_add_units(film, beauty + 1, r)",
+     "film"},
+};
+
+class Planted : public testing::TestWithParam<PlantedBug> {};
+
+/// A copy of the kernels with the bug's one change.
+void plant(const PlantedBug& bug, const std::filesystem::path& folder) {
+    std::filesystem::copy(RAYMILL_SOURCE_DIR "/kernels", folder, std::filesystem::copy_options::recursive);
+    std::string text = read_text(folder / bug.file);
+    const std::size_t place = text.find(bug.right);
+    ASSERT_NE(place, std::string::npos) << bug.file << " no longer contains: " << bug.right;
+    text.replace(place, std::string(bug.right).size(), bug.wrong);
+    std::ofstream(folder / bug.file) << text;
+}
+
+TEST_P(Planted, bug_is_found_in_its_stage) {
+    const PlantedBug& bug = GetParam();
+    const TemporaryFolder folder;
+    plant(bug, folder.path() / "kernels");
+    if (HasFatalFailure()) return;
+    Scene scene = branching_scene();
+    scene.camera.aperture = 0;
+    TestFrame frame(scene, folder.path() / "kernels");
+    const auto reports = verify_frame(frame.device, frame.scene, frame.renderer, {});
+    const StageReport& report = report_of(reports, bug.stage);
+    EXPECT_GT(report.failures(), 0u);
+    EXPECT_NE(report.first_failure(), "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Bugs, Planted, testing::ValuesIn(bugs),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+}  // namespace
+}  // namespace raymill::verify
