@@ -2,10 +2,14 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <new>
 
 #include "cli/commands.hpp"
+#include "common/error.hpp"
 #include "device/device.hpp"
 #include "scene/error.hpp"
 
@@ -14,12 +18,19 @@ namespace {
 constexpr int render_failed = 1;
 constexpr int bad_input = 2;
 
+/// What was printed must have arrived: a scene file cut off by a full disk is no success.
+void check_standard_output() {
+    if (std::fflush(stdout) != 0 || std::ferror(stdout))
+        throw raymill::OutputError(fmt::format("cannot write to standard output: {}", std::strerror(errno)));
+}
+
 int run(int argc, char** argv) {
     using namespace raymill;
     CLI::App app("Raymill renders scenes by moving rays through queues on an OpenCL device.", "raymill");
     app.set_version_flag("--version", "raymill " RAYMILL_VERSION);
     app.require_subcommand(1);
-    app.footer("`raymill COMMAND --help` tells more. Start with: raymill render scenes/first-light.toml -o first-light.png");
+    app.footer(
+        "`raymill COMMAND --help` tells more. Start with: raymill render scenes/first-light.toml -o first-light.png");
     const std::pair<const char*, Command> commands[] = {{"render", add_render_command(app)},
                                                         {"check", add_check_command(app)},
                                                         {"devices", add_devices_command(app)},
@@ -32,7 +43,11 @@ int run(int argc, char** argv) {
         throw UsageError(fmt::format("{}; see raymill --help", error.what()));
     }
     for (const auto& [name, command] : commands)
-        if (app.got_subcommand(name)) return command();
+        if (app.got_subcommand(name)) {
+            const int status = command();
+            check_standard_output();
+            return status;
+        }
     return bad_input;
 }
 

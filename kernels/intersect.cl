@@ -4,8 +4,28 @@
 // Next:   shade.
 
 #include "lib/environment.h"
-#include "lib/traverse.h"
 #include "lib/film.h"
+#include "lib/packet.h"
+
+/// Closest hits of a chunk of coherent rays, together; false, and nothing done, if they are better traced one by one.
+static bool intersect_together(const Geometry* geometry, global const Ray* rays, uint count, global Hit* hits) {
+#ifdef RAYMILL_PACKETS
+    Packet packet;
+    float3 origins[CHUNK], directions[CHUNK];
+    packet_start(&packet);
+    for (uint i = 0; i < count; ++i) {
+        origins[i] = load3(rays[i].origin);
+        directions[i] = load3(rays[i].direction);
+        packet_add(&packet, origins[i], directions[i], closest_plane(geometry, origins[i], directions[i], INFINITY));
+    }
+    if (!packet_is_coherent(&packet)) return false;
+    traverse_packet(geometry, &packet, false, origins, directions);
+    for (uint i = 0; i < count; ++i) hits[i] = packet_hit(&packet, i);
+    return true;
+#else
+    return false;
+#endif
+}
 
 /// One work-item a chunk of CHUNK rays.
 kernel void intersect(global const Ray* rays, uint first_ray, uint count, global const BvhNode* nodes,
@@ -17,16 +37,19 @@ kernel void intersect(global const Ray* rays, uint first_ray, uint count, global
     const Geometry geometry = scene_geometry(nodes, triangle_blocks, sphere_blocks, planes, constants);
     const uint begin = get_global_id(0) * CHUNK;
     const uint end = min(begin + CHUNK, count);
+    if (begin >= count) return;
+    if (!intersect_together(&geometry, rays + first_ray + begin, end - begin, hits + begin))
+        for (uint i = begin; i < end; ++i) {
+            global const Ray* ray = rays + first_ray + i;
+            hits[i] = closest_hit(&geometry, load3(ray->origin), load3(ray->direction));
+        }
     for (uint i = begin; i < end; ++i) {
         global const Ray* ray = rays + first_ray + i;
-        const float3 direction = load3(ray->direction);
-        const Hit hit = closest_hit(&geometry, load3(ray->origin), direction);
-        hits[i] = hit;
-        if (hit.primitive != NO_INDEX) {
+        if (hits[i].primitive != NO_INDEX) {
             if (ray->route == ROUTE_CAMERA)
                 film_add_units(&film, film_pixel(&film, FILM_BEAUTY, ray->pixel) + 3, FILM_ONE);
         } else {
-            const float3 sky = environment_radiance(textures, texels, constants, direction);
+            const float3 sky = environment_radiance(textures, texels, constants, load3(ray->direction));
             film_add_radiance(&film, FILM_EMISSION, ray->route, ray->pixel, load3(ray->throughput) * sky);
         }
     }

@@ -199,7 +199,7 @@ typedef struct {
     uint flags;
 } Material;
 
-/// RGBA float texels from `first` on, row by row from the top, linear RGB; repeats, bilinear.
+/// RGB float texels from texel `first` on, row by row from the top, linear RGB; repeats, bilinear.
 typedef struct {
     uint first;
     uint width;

@@ -4,14 +4,42 @@
 // Next:   the next range of light samples, or secondary.
 
 #include "lib/film.h"
+#include "lib/packet.h"
 #include "lib/surface.h"
+
+/// Finds out for a segment of coherent shadow rays what nothing at all stands in the way of: one bit of `clear` a ray.
+/// The others are blocked, or filtered. False, and nothing done, if the rays are better traced one by one.
+static bool look_together(const Geometry* geometry, global const ShadowRay* rays, uint count, ulong* clear) {
+#ifdef RAYMILL_PACKETS
+    Packet packet;
+    float3 origins[CHUNK], directions[CHUNK];
+    packet_start(&packet);
+    for (uint i = 0; i < count; ++i) {
+        origins[i] = load3(rays[i].origin);
+        directions[i] = load3(rays[i].direction);
+        Hit best = closest_plane(geometry, origins[i], directions[i], rays[i].t_max);
+        if (best.primitive != NO_INDEX) best.t = -1.0f;
+        packet_add(&packet, origins[i], directions[i], best);
+    }
+    if (!packet_is_coherent(&packet)) return false;
+    traverse_packet(geometry, &packet, true, origins, directions);
+    for (uint i = 0; i < count; ++i)
+        if (packet.best_primitive[i] == NO_INDEX) *clear |= 1ul << i;
+    return true;
+#else
+    return false;
+#endif
+}
+
+/// Whether a surface in the way may let some light through.
+static inline bool filters(constant SceneConstants* constants) {
+    return constants->shadows == SHADOWS_FILTERED && constants->any_filter;
+}
 
 /// What is left of light from t_max away: filtered by every transmissive surface on the way, each crossing once.
 static inline float3 transmittance(const Geometry* geometry, const World* world, global const ShadowRay* ray) {
-    constant SceneConstants* constants = world->constants;
     const float3 origin = load3(ray->origin), direction = load3(ray->direction);
-    if (constants->shadows == SHADOWS_NONE) return (float3)(1.0f);
-    if (constants->shadows == SHADOWS_OPAQUE || !constants->any_filter)
+    if (!filters(world->constants))
         return is_blocked(geometry, origin, direction, ray->t_max) ? (float3)(0.0f) : (float3)(1.0f);
     // In the order of distance, so that the product's bits do not depend on the hierarchy.
     float3 left = (float3)(1.0f);
@@ -37,10 +65,15 @@ kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shado
     const uint segment = get_global_id(0);
     if (segment >= segment_count) return;
     const uint count = shadow_counts[segment];
+    if (count == 0) return;
+    ulong clear = constants->shadows == SHADOWS_NONE ? ~0ul : 0ul;
+    const bool known =
+        clear != 0 || look_together(&geometry, shadow_rays + segment * CHUNK, count, &clear);
     uint blocked = 0;
     for (uint i = 0; i < count; ++i) {
         global const ShadowRay* ray = shadow_rays + segment * CHUNK + i;
-        const float3 left = transmittance(&geometry, &world, ray);
+        float3 left = clear >> i & 1ul ? (float3)(1.0f) : (float3)(0.0f);
+        if (!known || (!(clear >> i & 1ul) && filters(constants))) left = transmittance(&geometry, &world, ray);
         if (ray->route == ROUTE_CAMERA && film_keeps(&film, FILM_SHADOW)) {
             film_add(&film, FILM_SHADOW, ray->pixel, left);
             film_add_units(&film, film_pixel(&film, FILM_SHADOW, ray->pixel) + 3, FILM_ONE);

@@ -123,6 +123,13 @@ void DeviceArguments::add_to(CLI::App& command) {
         ->type_name("N")
         ->check(CLI::Range(1u, 1u << 20));
     command.add_option("--mem-limit", mem_limit, "Device memory that may be used, as in 512M")->type_name("SIZE");
+    static const std::map<std::string, Traversal> traversals = {
+        {"auto", Traversal::automatic}, {"packet", Traversal::packet}, {"single", Traversal::single}};
+    command
+        .add_option("--traversal", traversal,
+                    "auto, packet (coherent rays together) or single; the image does not depend on it")
+        ->type_name("NAME")
+        ->transform(CLI::CheckedTransformer(traversals).description(""));
     command.add_option("--kernel-dir", kernel_dir, "Read the kernels from this folder instead of the program")
         ->type_name("DIR");
 }
@@ -132,6 +139,7 @@ RenderOptions DeviceArguments::options() const {
     options.memory.queue_capacity = queue_capacity;
     if (!mem_limit.empty()) options.memory.limit = parse_bytes(mem_limit);
     options.work_group = work_group;
+    options.traversal = traversal;
     options.kernel_dir = kernel_dir;
     return options;
 }

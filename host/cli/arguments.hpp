@@ -35,6 +35,7 @@ struct DeviceArguments {
     std::uint32_t queue_capacity = 0;
     std::uint32_t work_group = 0;
     std::string mem_limit;
+    Traversal traversal = Traversal::automatic;
     std::string kernel_dir;
 
     void add_to(CLI::App& command);

@@ -18,12 +18,13 @@ std::string build_options(const Device& device) {
 
 }  // namespace
 
-cl::Program build_program(const Device& device, const std::vector<std::string>& files, const std::string& folder) {
+cl::Program build_program(const Device& device, const std::vector<std::string>& files, const std::string& folder,
+                          const std::string& definitions) {
     const std::string source = kernel_source(files, folder);
     try {
         cl::Program program(device.context, source);
         try {
-            program.build({device.device}, build_options(device).c_str());
+            program.build({device.device}, (build_options(device) + " " + definitions).c_str());
         } catch (const cl::Error& error) {
             throw DeviceError(fmt::format("the kernels do not build on {} ({}):\n{}", device.info.name,
                                           status_name(error.err()),

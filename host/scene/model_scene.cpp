@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -36,17 +37,28 @@ bool finite(const std::array<dvec3, 3>& points) {
     return std::isfinite(sum);
 }
 
-Box bounds_of(const Scene& scene) {
+Box bounds_of(const std::vector<dvec3>& points) {
     Box box;
-    for (const Triangle& triangle : scene.triangles) {
-        const auto points = points_of(scene, triangle);
-        if (!finite(points)) continue;
-        for (const dvec3& p : points) {
-            box.lower = glm::min(box.lower, p);
-            box.upper = glm::max(box.upper, p);
-        }
+    for (const dvec3& p : points) {
+        box.lower = glm::min(box.lower, p);
+        box.upper = glm::max(box.upper, p);
     }
     return box;
+}
+
+bool is_lamp(const Scene& scene, const Triangle& triangle) {
+    return scene.materials[triangle.material].emission != glm::vec3(0);
+}
+
+/// The corners of the triangles that are lamps, or of those that are not.
+std::vector<dvec3> corners_of(const Scene& scene, bool lamps) {
+    std::vector<dvec3> corners;
+    for (const Triangle& triangle : scene.triangles) {
+        const auto points = points_of(scene, triangle);
+        if (is_lamp(scene, triangle) == lamps && finite(points))
+            corners.insert(corners.end(), points.begin(), points.end());
+    }
+    return corners;
 }
 
 /// How much of each side of the box is covered by triangles close to it: side 2 * axis is the lower, + 1 the upper.
@@ -86,6 +98,27 @@ dvec3 open_side(const Scene& scene, const Box& box) {
     return dvec3(0);
 }
 
+/// Corners of what stands between the six walls of a closed room of opaque walls; none if the model is no such room.
+std::vector<dvec3> contents_of_closed_room(const Scene& scene, const Box& box, const std::vector<dvec3>& points) {
+    const std::array<double, 6> covered = covered_sides(scene, box);
+    constexpr double closed = 0.9;
+    if (*std::min_element(covered.begin(), covered.end()) < closed) return {};
+    for (const SceneMaterial& material : scene.materials)
+        if (material.transmission > 0) return {};
+    constexpr double wall = 0.05;  // of the box's size; what stands on the floor reaches above that
+    std::vector<dvec3> contents;
+    for (std::size_t i = 0; i + 2 < points.size(); i += 3) {
+        bool inside = true;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double margin = wall * box.size()[axis];
+            for (std::size_t k = i; k < i + 3; ++k)
+                inside &= points[k][axis] > box.lower[axis] + margin && points[k][axis] < box.upper[axis] - margin;
+        }
+        if (inside) contents.insert(contents.end(), {points[i], points[i + 1], points[i + 2]});
+    }
+    return contents;
+}
+
 /// To six significant digits.
 double rounded(double value) {
     return std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr);
@@ -102,17 +135,28 @@ struct ViewAxes {
           back(towards_eye) {}
 };
 
-/// The least distance from the box's centre at which all its corners are seen.
-double framing_distance(const Box& box, const ViewAxes& view, double tan_x, double tan_y) {
+/// The least distance from the centre at which all points are seen.
+double framing_distance(const std::vector<dvec3>& points, const dvec3& center, const ViewAxes& view, double tan_x,
+                        double tan_y) {
     double distance = 0;
-    for (int i = 0; i < 8; ++i) {
-        const dvec3 signs((i & 1) ? 1 : -1, (i & 2) ? 1 : -1, (i & 4) ? 1 : -1);
-        const dvec3 corner = 0.5 * signs * box.size();
-        const double forward = glm::dot(corner, view.back);
-        distance = std::max(distance, forward + std::abs(glm::dot(corner, view.right)) / tan_x);
-        distance = std::max(distance, forward + std::abs(glm::dot(corner, view.up)) / tan_y);
+    for (const dvec3& point : points) {
+        const dvec3 p = point - center;
+        const double forward = glm::dot(p, view.back);
+        distance = std::max(distance, forward + std::abs(glm::dot(p, view.right)) / tan_x);
+        distance = std::max(distance, forward + std::abs(glm::dot(p, view.up)) / tan_y);
     }
     return distance;
+}
+
+/// How far one can go from `start` within the box along the unit vector.
+double way_inside(const Box& box, const dvec3& start, const dvec3& direction) {
+    double way = INFINITY;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (direction[axis] == 0) continue;
+        const double wall = direction[axis] > 0 ? box.upper[axis] : box.lower[axis];
+        way = std::min(way, (wall - start[axis]) / direction[axis]);
+    }
+    return way;
 }
 
 /// A light that travels against `towards_light`.
@@ -146,39 +190,68 @@ std::string toml_text(const std::string& text) {
     return quoted + '"';
 }
 
-std::string light_toml(const DirectionalLight& light) {
+std::string light_toml(const std::variant<DirectionalLight, PointLight>& light) {
+    if (const auto* point = std::get_if<PointLight>(&light))
+        return fmt::format("[[light]]\ntype = \"point\"\nposition = {}\nintensity = {}\n\n",
+                           toml_vector(point->position), toml_number(point->intensity.x));
+    const auto& directional = std::get<DirectionalLight>(light);
     return fmt::format("[[light]]\ntype = \"directional\"\ndirection = {}\nintensity = {}\n\n",
-                       toml_vector(light.direction), toml_number(light.intensity.x));
+                       toml_vector(directional.direction), toml_number(directional.intensity.x));
+}
+
+PointLight point_light(const dvec3& position, float intensity) {
+    PointLight light;
+    light.position = glm::vec3(rounded(position));
+    light.intensity = glm::vec3(intensity);
+    return light;
+}
+
+/// Below the lamps, or below the middle of the ceiling.
+dvec3 room_light(const Scene& scene, const Box& room) {
+    const Box lamps = bounds_of(corners_of(scene, true));
+    const double below = 0.05 * room.size().y;
+    dvec3 position(room.center().x, room.upper.y, room.center().z);
+    if (!lamps.empty()) position = {lamps.center().x, std::min(lamps.lower.y, room.upper.y), lamps.center().z};
+    position.y = std::max(position.y - below, room.lower.y + below);
+    return position;
+}
+
+void light_room(const Scene& scene, const Box& room, ModelFraming& framing) {
+    framing.key = point_light(room_light(scene, room), 0.7f);
+    framing.fill = point_light(framing.camera.eye, 0.3f);
 }
 
 }  // namespace
 
 ModelFraming frame_model(const Scene& scene) {
     ModelFraming framing;
-    Box box = bounds_of(scene);
-    if (box.empty()) box = {dvec3(-1), dvec3(1)};
-    if (glm::length(box.size()) == 0) {
-        box.lower -= 1.0;
-        box.upper += 1.0;
-    }
+    std::vector<dvec3> points = corners_of(scene, false);
+    if (points.empty()) points = corners_of(scene, true);
+    if (points.empty()) points = {dvec3(-1), dvec3(1)};
+    if (glm::length(bounds_of(points).size()) == 0) points = {points[0] - 1.0, points[0] + 1.0};
+    const Box box = bounds_of(points);
     const dvec3 open = open_side(scene, box);
-    const bool room = open != dvec3(0);
+    const bool is_open_room = open != dvec3(0);
+    const std::vector<dvec3> contents = contents_of_closed_room(scene, box, points);
     const double turn = glm::radians(30.0), rise = glm::radians(20.0);
     const dvec3 corner_view(std::sin(turn) * std::cos(rise), std::sin(rise), std::cos(turn) * std::cos(rise));
-    const ViewAxes view(room ? open : corner_view);
+    const ViewAxes view(is_open_room ? open : corner_view);
 
     Camera& camera = framing.camera;
-    constexpr double margin = 1.05;
+    constexpr double margin = 1.05, before_wall = 0.95;
     const RenderSettings settings;
     const double tan_y = std::tan(glm::radians(camera.fov / 2));
     const double tan_x = tan_y * settings.width / settings.height;
-    camera.look_at = rounded(box.center());
-    camera.eye = rounded(box.center() + margin * framing_distance(box, view, tan_x, tan_y) * view.back);
+    const std::vector<dvec3>& framed = contents.empty() ? points : contents;
+    const dvec3 center = bounds_of(framed).center();
+    double distance = margin * framing_distance(framed, center, view, tan_x, tan_y);
+    if (!contents.empty()) distance = std::min(distance, before_wall * way_inside(box, center, view.back));
+    camera.look_at = rounded(center);
+    camera.eye = rounded(center + distance * view.back);
     camera.up = {0, 1, 0};
 
-    if (room) {  // nearly level, or the ceiling would keep the light out
-        framing.key = light_from(-0.25 * view.right + 0.15 * view.up + view.back, 0.7f);
-        framing.fill = light_from(0.25 * view.right - 0.05 * view.up + view.back, 0.35f);
+    if (is_open_room || !contents.empty()) {
+        light_room(scene, box, framing);
     } else {
         framing.key = light_from(-0.5 * view.right + 0.8 * view.up + 0.8 * view.back, 0.9f);
         framing.fill = light_from(0.8 * view.right + 0.2 * view.up + 0.6 * view.back, 0.3f);
@@ -193,10 +266,14 @@ void read_model(Loading& loading, const std::string& file) {
     if (!loading.errors.empty()) return;
     const ModelFraming framing = frame_model(scene);
     scene.camera = framing.camera;
-    scene.lights = {{framing.key}, {framing.fill}, {framing.ambient}};
+    const auto scene_light = [](const auto& light) { return SceneLight{light}; };
+    scene.lights = {std::visit(scene_light, framing.key), std::visit(scene_light, framing.fill), {framing.ambient}};
 }
 
 std::string model_scene_toml(const std::string& model_file) {
+    if (extension_of(model_file) != ".obj")
+        throw SceneError({model_file},
+                         "a bare model (.obj) is what a scene file is made for; a scene file is one already");
     Loading loading;
     loading.scene.materials.emplace_back();
     read_model(loading, model_file);

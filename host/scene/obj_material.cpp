@@ -46,7 +46,8 @@ float largest(const glm::vec3& c) {
 }
 
 bool is_glass(const tinyobj::material_t& mtl) {
-    if (mtl.illum == no_illum) return largest(color(mtl.transmittance)) > 0 || (mtl.dissolve < 1 && mtl.ior > 1);
+    // Without illum an index of refraction must tell glass: glossy paint comes with Tf too.
+    if (mtl.illum == no_illum) return mtl.ior > 1 && (largest(color(mtl.transmittance)) > 0 || mtl.dissolve < 1);
     return mtl.illum == 4 || mtl.illum == 6 || mtl.illum == 7 || mtl.illum == 9;
 }
 

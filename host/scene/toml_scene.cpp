@@ -55,7 +55,7 @@ void read_render(TableReader& reader, RenderSettings& settings) {
         settings.height = static_cast<int>(size[1]);
     }
     settings.spp = static_cast<int>(reader.integer("spp", settings.spp, 1, 1 << 20));
-    settings.depth = static_cast<int>(reader.integer("depth", settings.depth, 0, 100));
+    settings.depth = static_cast<int>(reader.integer("depth", settings.depth, 0, 1000));
     settings.integrator = reader.choice("integrator", settings.integrator,
                                         {{"whitted", Integrator::whitted}, {"path", Integrator::path}});
     if (settings.integrator == Integrator::path)

@@ -17,6 +17,13 @@ class Buffer {
         : size_(size), memory_(device.context, CL_MEM_READ_WRITE, std::max<std::size_t>(size, 1) * sizeof(T)) {}
     Buffer(const Device& device, std::span<const T> values) : Buffer(device, values.size()) { write(device, values); }
 
+    /// The first `count` elements in the same memory, as a buffer of their own.
+    Buffer first(std::size_t count) const {
+        Buffer part = *this;
+        part.size_ = count;
+        return part;
+    }
+
     std::size_t size() const { return size_; }
     const cl::Buffer& memory() const { return memory_; }
 

@@ -81,7 +81,7 @@ Renderer::Renderer(const Device& device, const Scene& scene, const Bvh& bvh, con
       scene_(scene),
       planes_(options.planes),
       plan_(plan_memory(scene, bvh, planes_, options.memory, device.info)),
-      stages_(device, options.work_group, options.kernel_dir),
+      stages_(device, options.work_group, options.kernel_dir, options.traversal),
       device_scene_(device, scene, bvh, planes_),
       max_depth_(plan_.queues - 1),
       waves_(plan_.queue_capacity, max_depth_),

@@ -18,6 +18,7 @@ struct RenderOptions {
     MemoryRequest memory;
     FilmPlanes planes;           // what the film keeps beside the beauty
     std::size_t work_group = 0;  // items; 0: what suits each stage
+    Traversal traversal = Traversal::automatic;
     std::string kernel_dir;      // empty: the embedded kernels
 };
 

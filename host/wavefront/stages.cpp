@@ -25,11 +25,14 @@ cl_ulong argument(std::uint64_t value) { return value; }
 
 }  // namespace
 
-Stages::Stages(const Device& device, std::size_t work_group, const std::string& kernel_dir) : device_(device) {
+Stages::Stages(const Device& device, std::size_t work_group, const std::string& kernel_dir, Traversal traversal)
+    : device_(device) {
     if (work_group > device.info.largest_work_group)
         throw DeviceError(fmt::format("device {} has work-groups of at most {} items, not {}: lower --work-group",
                                       device.info.name, device.info.largest_work_group, work_group));
-    const cl::Program program = build_program(device, kernel_files, kernel_dir);
+    const bool packets =
+        traversal == Traversal::packet || (traversal == Traversal::automatic && device.info.type == "CPU");
+    const cl::Program program = build_program(device, kernel_files, kernel_dir, packets ? "-DRAYMILL_PACKETS" : "");
     const auto stage = [&](const char* name, std::size_t group) {
         return Stage{name, make_kernel(program, name), work_group > 0 ? work_group : group};
     };

@@ -39,10 +39,15 @@ struct SlotRange {
 /// Called after each launch with the stage's name and its event, where launches are to be timed.
 using LaunchObserver = std::function<void(const char* stage, uint items, const cl::Event& event)>;
 
+/// How rays go through the hierarchy. packet: coherent rays of a chunk together, as vector units like it; single: each
+/// alone. automatic: packet on processors, single elsewhere. The picture does not depend on it.
+enum class Traversal { automatic, packet, single };
+
 class Stages {
   public:
     /// work_group: items of a work-group, 0 for what suits each stage. kernel_dir: see kernel_source().
-    Stages(const Device& device, std::size_t work_group, const std::string& kernel_dir);
+    Stages(const Device& device, std::size_t work_group, const std::string& kernel_dir,
+           Traversal traversal = Traversal::automatic);
 
     void observe(LaunchObserver observer) { observer_ = std::move(observer); }
 

@@ -61,6 +61,7 @@ static inline float2 phong_terms(global const Material* material, float3 n, floa
 /// cos_i in [0, 1]; eta = n_transmitted / n_incident > 0.
 /// Source: Pharr, Jakob, Humphreys, Physically Based Rendering 4e, section 9.3.5.
 static inline float fresnel_dielectric(float cos_i, float eta) {
+    if (eta == 1.0f) return 0.0f;  // no boundary, at grazing angles neither
     const float sin2_t = (1.0f - cos_i * cos_i) / (eta * eta);
     if (sin2_t >= 1.0f) return 1.0f;
     const float cos_t = sqrt(1.0f - sin2_t);

@@ -73,6 +73,7 @@ static inline Answer gouraud_answer(const World* world, const Shading* s, global
             at_vertex.direction = unit3(light_position - p);
         const float3 to_eye = any(origin != p) ? unit3(origin - p) : s->to_eye;
         const float2 terms = phong_terms(s->material, n, at_vertex.direction, to_eye);
+        if (terms.x == 0.0f) continue;  // I_in is not a number where the light lies on the vertex
         diffuse_light = fma3(weights[corner] * terms.x, at_vertex.incoming, diffuse_light);
         specular_light = fma3(weights[corner] * terms.y, at_vertex.incoming, specular_light);
     }

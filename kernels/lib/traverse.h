@@ -1,6 +1,6 @@
 // The closest hit and the light that passes: one ray through the eight-wide hierarchy, and then the infinite planes.
-// Sources: node layout and octant order, Wald et al., "Getting Rid of Packets", 2008; conservative slabs, Ize, "Robust BVH Ray
-// Traversal", JCGT 2013.
+// What is found does not depend on the hierarchy: see slabs.h for the boxes, and is_later for ties.
+// Source: node layout and octant order, Wald et al., "Getting Rid of Packets", 2008.
 #ifndef RAYMILL_TRAVERSE_H
 #define RAYMILL_TRAVERSE_H
 
@@ -27,29 +27,6 @@ static inline Geometry scene_geometry(global const BvhNode* nodes, global const 
     return g;
 }
 
-/// The ray in slab form: plane * inverse + near or far gives the distance, rounded outward by the error of its offset.
-typedef struct {
-    float3 inverse;
-    float3 near, far;
-    uint sign[3];  // 1 where the direction is negative: the upper plane comes first
-} SlabFrame;
-
-static inline SlabFrame slab_frame(float3 origin, float3 direction) {
-    // Directions are unit, so 1e-18 is as good as parallel, and keeps infinity times zero out.
-    const float3 d = select(direction, copysign((float3)(1e-18f), direction), fabs(direction) < 1e-18f);
-    SlabFrame f;
-    f.inverse = 1.0f / d;
-    const float3 offset = -origin * f.inverse;
-    // Both the product above and the origin's own grid: two roundings, and one to spare.
-    const float3 error = fabs(offset) * (3.0f * ROUNDING);
-    f.near = offset - error;
-    f.far = offset + error;
-    f.sign[0] = d.x < 0.0f;
-    f.sign[1] = d.y < 0.0f;
-    f.sign[2] = d.z < 0.0f;
-    return f;
-}
-
 /// Children whose boxes the ray meets in [0, t_max], and where it enters them.
 static inline uint intersect_children(global const BvhNode* node, SlabFrame f, float t_max, float8* entry) {
     global const float* planes = &node->bounds[0][0][0];
@@ -62,7 +39,7 @@ static inline uint intersect_children(global const BvhNode* node, SlabFrame f, f
     const float8 enter = max8(max8(near_x, near_y), max8(near_z, (float8)(0.0f)));
     const float8 leave = min8(min8(far_x, far_y), min8(far_z, (float8)(t_max)));
     *entry = enter;
-    return lane_mask(enter <= leave * (1.0f + 8.0f * ROUNDING));
+    return lane_mask(slabs_overlap(enter, leave));
 }
 
 /// Whether a hit comes later along the ray than (t, primitive) in the one order that everybody uses: distance, then id.
@@ -83,9 +60,10 @@ static inline bool accepts(const Query* query, float t, uint primitive) {
            is_later(query->best.t, query->best.primitive, t, primitive);
 }
 
-static inline void visit_triangles(global const TriangleBlock* block, TriangleFrame frame, Query* query) {
+static inline void visit_triangles(global const TriangleBlock* block, const SlabFrame* slabs, TriangleFrame frame,
+                                   Query* query) {
     float8 t8, u8, v8;
-    uint mask = intersect_triangles(block, frame, query->best.t, &t8, &u8, &v8);
+    uint mask = intersect_triangles(block, slabs, frame, query->best.t, &t8, &u8, &v8);
     if (mask == 0) return;
     float t[BVH_WIDTH], u[BVH_WIDTH], v[BVH_WIDTH];
     vstore8(t8, 0, t);
@@ -102,10 +80,9 @@ static inline void visit_triangles(global const TriangleBlock* block, TriangleFr
     }
 }
 
-static inline void visit_spheres(global const SphereBlock* block, Query* query) {
-    // A sphere may be met twice: where the first crossing is `after`, look beyond it, strictly since the id is the same.
+static inline void visit_spheres(global const SphereBlock* block, const SlabFrame* slabs, Query* query) {
     float8 t8;
-    uint mask = intersect_spheres(block, query->origin, query->direction, query->after.t, query->best.t, &t8);
+    uint mask = intersect_spheres(block, slabs, query->origin, query->direction, query->after, query->best.t, &t8);
     if (mask == 0) return;
     float t[BVH_WIDTH];
     vstore8(t8, 0, t);
@@ -126,7 +103,7 @@ static inline void visit_planes(const Geometry* geometry, Query* query) {
         const float3 normal = load3(plane->normal);
         const float height = dot3(normal, query->origin - load3(plane->point));
         const float t = -height / dot3(normal, query->direction);
-        if (!(t > 0.0f) || !accepts(query, t, geometry->first_plane + i)) continue;
+        if (!(t > 0.0f && t < INFINITY) || !accepts(query, t, geometry->first_plane + i)) continue;
         query->best.t = t;
         query->best.u = 0.0f;
         query->best.v = 0.0f;
@@ -171,9 +148,9 @@ static void traverse(const Geometry* geometry, Query* query, bool any_hit) {
             const uint last = first + (child >> CHILD_BLOCKS_SHIFT & CHILD_BLOCKS_MASK);
             for (uint block = first; block <= last; ++block) {
                 if (child & CHILD_SPHERES)
-                    visit_spheres(geometry->spheres + block, query);
+                    visit_spheres(geometry->spheres + block, &slabs, query);
                 else
-                    visit_triangles(geometry->triangles + block, frame, query);
+                    visit_triangles(geometry->triangles + block, &slabs, frame, query);
             }
         } else {
             float8 entry;
@@ -187,6 +164,13 @@ static void traverse(const Geometry* geometry, Query* query, bool any_hit) {
 static inline Hit closest_hit_after(const Geometry* geometry, float3 origin, float3 direction, Hit after, float t_max) {
     Query query = {origin, direction, after, {t_max, 0.0f, 0.0f, NO_INDEX}};
     traverse(geometry, &query, false);
+    return query.best;
+}
+
+/// The closest hit among the infinite planes alone.
+static inline Hit closest_plane(const Geometry* geometry, float3 origin, float3 direction, float t_max) {
+    Query query = {origin, direction, {0.0f, 0.0f, 0.0f, NO_INDEX}, {t_max, 0.0f, 0.0f, NO_INDEX}};
+    visit_planes(geometry, &query);
     return query.best;
 }
 

@@ -6,7 +6,7 @@
 #ifndef RAYMILL_TRIANGLE_H
 #define RAYMILL_TRIANGLE_H
 
-#include "lib/math.h"
+#include "lib/slabs.h"
 
 /// The ray's frame: axis z is the largest of the direction's, x and y keep the handedness; shear maps the ray onto z.
 typedef struct {
@@ -72,10 +72,26 @@ static bool inside_exactly(float ax, float ay, float bx, float by, float cx, flo
            (w != 0 || owns_edge(ax, ay, bx, by, facing));
 }
 
+/// Where the ray enters the bounds of each of the block's triangles. A box around them is entered no later, by the same
+/// arithmetic: rounding is monotonic.
+static inline float8 enter_triangles(global const TriangleBlock* block, const SlabFrame* slabs) {
+    global const float* p = &block->position[0][0][0];
+    const float inverse[3] = {slabs->inverse.x, slabs->inverse.y, slabs->inverse.z};
+    const float near[3] = {slabs->near.x, slabs->near.y, slabs->near.z};
+    float8 enter = (float8)(0.0f);
+    for (uint axis = 0; axis < 3; ++axis) {
+        const float8 a = fma(vload8(axis, p), (float8)(inverse[axis]), (float8)(near[axis]));
+        const float8 b = fma(vload8(3 + axis, p), (float8)(inverse[axis]), (float8)(near[axis]));
+        const float8 c = fma(vload8(6 + axis, p), (float8)(inverse[axis]), (float8)(near[axis]));
+        enter = max8(min8(min8(a, b), c), enter);
+    }
+    return enter;
+}
+
 /// Hits of the block's triangles: distance and barycentric weights of vertices 1 and 2 by lane. The mask says which lanes
 /// hit at a distance in (0, t_max] that is certainly positive.
-static inline uint intersect_triangles(global const TriangleBlock* block, TriangleFrame f, float t_max, float8* t,
-                                       float8* u, float8* v) {
+static inline uint intersect_triangles(global const TriangleBlock* block, const SlabFrame* slabs, TriangleFrame f,
+                                       float t_max, float8* t, float8* u, float8* v) {
     global const float* p = &block->position[0][0][0];
     const float8 az = vload8(f.z, p) - f.origin_z;
     const float8 bz = vload8(3 + f.z, p) - f.origin_z;
@@ -121,10 +137,11 @@ static inline uint intersect_triangles(global const TriangleBlock* block, Triang
     const float8 e = max8(max8(fabs(ua), fabs(va)), fabs(wa));
     const float8 delta_e = 2.0f * ROUNDING * (2.0f * x * y + 5.0f * ((y + z) * x + (x + z) * y));
     const float8 delta = 3.0f * (6.0f * ROUNDING * e + delta_e) * z * fabs(f.shear_z) * fabs(inverse);
-    *t = distance;
+    // No hit before its own bounds are entered: else a box might cull what comes out a rounding error nearer than the box.
+    *t = max8(enter_triangles(block, slabs), distance);
     *u = va * inverse;
     *v = wa * inverse;
-    return mask & lane_mask((det != 0.0f) & (distance > delta) & (distance <= t_max));
+    return mask & lane_mask((det != 0.0f) & (distance > delta) & (*t <= t_max));
 }
 
 #endif

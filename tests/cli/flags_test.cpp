@@ -1,4 +1,5 @@
 // Flags: what they accept, what they refuse, and what they do to the picture.
+#include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfIntAttribute.h>
 #include <gtest/gtest.h>
 
@@ -64,7 +65,9 @@ TEST_F(Flags, say_the_memory_with_and_without_units) {
         EXPECT_EQ(outcome.status, 0) << size << ": " << outcome.err;
         EXPECT_TRUE(contains(outcome.out, "memory")) << outcome.out;
     }
-    expect_failure(check({"--mem-limit", "1K"}), 1, "1.0 KiB of --mem-limit");
+    const Outcome too_small = check({"--mem-limit", "1K"});
+    EXPECT_EQ(too_small.status, 1);
+    EXPECT_TRUE(contains(too_small.err, "1.0 KiB of --mem-limit")) << too_small.err;
     expect_failure(run_raymill({"render", scene_, "-o", folder_.file("a.exr"), "--mem-limit", "1K"}), 1, "--mem-limit");
 }
 
@@ -92,6 +95,16 @@ TEST_F(Flags, of_the_device_do_not_change_the_picture) {
     EXPECT_TRUE(same_pixels(plain, render({"--queue-capacity", "7", "--work-group", "8", "--threads", "1"})));
     EXPECT_TRUE(same_pixels(plain, render({"--mem-limit", "1M", "--kernel-dir", RAYMILL_KERNELS})));
     EXPECT_FALSE(same_pixels(plain, render({"--depth", "0"})));
+}
+
+TEST_F(Flags, of_aovs_add_layers_and_leave_the_picture_alone) {
+    const Picture plain = render({}), layered = render({"--aov", "diffuse,N,Z"});
+    EXPECT_TRUE(same_pixels(plain, layered));
+    for (const char* channel : {"diffuse.R", "N.X", "N.Z", "R", "A"})
+        EXPECT_TRUE(layered.header.channels().findChannel(channel)) << channel;
+    EXPECT_FALSE(plain.header.channels().findChannel("diffuse.R"));
+    EXPECT_FALSE(layered.header.channels().findChannel("specular.R"));
+    expect_failure(run_raymill({"render", scene_, "-o", folder_.file("a.exr"), "--aov", "shine"}), 2, "shine");
 }
 
 TEST_F(Flags, of_half_floats_round_the_picture_a_little) {

@@ -22,7 +22,7 @@ class BadInput : public testing::Test {
         expect_failure(run_raymill({"render", folder_.file(scene), "-o", folder_.file("precious.exr")}), 2,
                        part_of_message);
         EXPECT_EQ(folder_.entries(), entries);
-        EXPECT_EQ(read_bytes(folder_.file("precious.exr")), "not to be lost");
+        EXPECT_TRUE(read_bytes(folder_.file("precious.exr")) == "not to be lost");
     }
     void expect_text_refused(const std::string& text, const std::string& part_of_message,
                              const std::string& name = "scene.toml") {
@@ -48,9 +48,6 @@ TEST_F(BadInput, a_folder) {
 TEST_F(BadInput, an_unknown_extension) {
     expect_text_refused("[render]", "\".txt\"", "scene.txt");
 }
-TEST_F(BadInput, an_empty_model) {
-    expect_text_refused("", "scene.obj", "scene.obj");
-}
 TEST_F(BadInput, wrong_toml) {
     expect_text_refused("[render]\nsize = [1, ", "scene.toml:2:");
 }
@@ -59,7 +56,6 @@ TEST_F(BadInput, binary_junk) {
     std::string junk;
     for (int i = 0; i < 5000; ++i) junk += static_cast<char>((i * 2654435761u) >> 24);
     expect_text_refused(junk, "scene.toml:1:");
-    expect_text_refused(junk, "junk.obj", "junk.obj");
 }
 
 TEST_F(BadInput, a_value_of_the_wrong_type_at_its_line_and_column) {
@@ -91,14 +87,16 @@ TEST_F(BadInput, all_faults_are_shown_in_the_order_of_the_file) {
     EXPECT_TRUE(spp < depth && depth < cube && cube < err.size()) << err;
 }
 
-TEST(an_empty_scene_file, renders_the_background_with_a_warning) {
-    const TemporaryFolder folder;
-    write_text(folder.file("empty.toml"), "");
-    const Outcome outcome =
-        run_raymill({"render", folder.file("empty.toml"), "--size", "8x6", "-o", folder.file("empty.exr")});
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_TRUE(contains(outcome.err, "warning:")) << outcome.err;
-    EXPECT_TRUE(std::filesystem::exists(folder.file("empty.exr")));
+TEST(an_empty_file, renders_the_background_with_a_warning_that_names_it) {
+    for (const char* name : {"empty.toml", "empty.obj"}) {
+        const TemporaryFolder folder;
+        write_text(folder.file(name), "");
+        const Outcome outcome =
+            run_raymill({"render", folder.file(name), "--size", "8x6", "-o", folder.file("empty.exr")});
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        EXPECT_TRUE(contains(outcome.err, "warning: " + folder.file(name) + ": there are no ")) << outcome.err;
+        EXPECT_TRUE(std::filesystem::exists(folder.file("empty.exr")));
+    }
 }
 
 }  // namespace

@@ -6,9 +6,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
-#include <chrono>
 #include <filesystem>
-#include <thread>
 
 #include "exr_pixels.hpp"
 #include "image/temporary_folder.hpp"
@@ -55,7 +53,7 @@ TEST_F(Output, as_png_begins_as_a_png_does) {
 TEST_F(Output, of_a_brighter_exposure_is_another_png) {
     render_to("plain.png");
     run_raymill({"render", scene_, "-o", folder_.file("bright.png"), "--exposure", "1"});
-    EXPECT_NE(read_bytes(folder_.file("plain.png")), read_bytes(folder_.file("bright.png")));
+    EXPECT_TRUE(read_bytes(folder_.file("plain.png")) != read_bytes(folder_.file("bright.png")));
 }
 
 TEST_F(Output, of_unknown_kind_is_status_2_before_anything_is_rendered) {
@@ -72,6 +70,11 @@ TEST_F(Output, that_cannot_be_written_is_status_1) {
     EXPECT_EQ(folder_.entries(), 2);
 }
 
+TEST_F(Output, on_a_standard_output_that_is_full_is_status_1) {
+    for (const std::vector<std::string>& arguments : {std::vector<std::string>{"devices"}, {"check", scene_}})
+        expect_failure(run_raymill(arguments, {.standard_output = "/dev/full"}), 1, "standard output");
+}
+
 TEST_F(Output, replaces_an_older_file_and_leaves_nothing_beside_it) {
     write_text(folder_.file("picture.exr"), "older");
     EXPECT_EQ(render_to("picture.exr").status, 0);
@@ -84,7 +87,7 @@ TEST_F(Output, is_not_there_and_an_older_one_untouched_after_a_failure) {
     for (const char* file : {"picture.exr", "new.exr"})
         expect_failure(run_raymill({"render", scene_, "-o", folder_.file(file), "--mem-limit", "2K"}), 1,
                        "--mem-limit");
-    EXPECT_EQ(read_bytes(folder_.file("picture.exr")), "older");
+    EXPECT_TRUE(read_bytes(folder_.file("picture.exr")) == "older");
     EXPECT_EQ(folder_.entries(), 2);
 }
 
@@ -129,19 +132,18 @@ TEST_F(Output, may_have_spaces_and_umlauts_in_its_path) {
     EXPECT_EQ(read_picture(file).width, 24);
 }
 
-/// Sends the signal once the program is ready for it, that is, while it renders.
-void interrupt(int pid) {
-    for (int i = 0; i < 6000 && !catches_signal(pid, SIGINT); ++i)
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    ::kill(pid, SIGINT);
-}
-
 TEST_F(Output, of_an_interrupted_render_is_a_whole_file_and_status_130) {
     const std::string file = folder_.file("picture.exr");
+    // Pressed once, when the progress bar is there, that is, while the program renders.
+    bool pressed = false;
+    const auto press_ctrl_c = [&](int pid, const std::string& terminal) {
+        if (pressed || !contains(terminal, "% ")) return;
+        pressed = ::kill(pid, SIGINT) == 0;
+    };
     // Hours of work, if nobody stopped it.
     const Outcome outcome = run_raymill({"render", scene_, "-o", file, "--size", "2000x2000", "--spp", "4096",
                                          "--depth", "20", "--queue-capacity", "4096"},
-                                        {.while_running = interrupt});
+                                        {.watch_terminal = press_ctrl_c});
     EXPECT_EQ(outcome.status, 130) << outcome.err;
     EXPECT_EQ(outcome.out, "");
     EXPECT_TRUE(contains(outcome.err, "interrupted: ")) << outcome.err;
@@ -149,6 +151,17 @@ TEST_F(Output, of_an_interrupted_render_is_a_whole_file_and_status_130) {
     EXPECT_EQ(picture.width, 2000);
     EXPECT_EQ(picture.height, 2000);
     EXPECT_EQ(folder_.entries(), 2);
+}
+
+TEST_F(Output, on_a_terminal_has_a_progress_bar_that_is_wiped) {
+    const Outcome outcome = run_raymill(
+        {"render", scene_, "-o", folder_.file("picture.exr"), "--size", "400x300", "--queue-capacity", "64"},
+        {.watch_terminal = [](int, const std::string&) {}});
+    EXPECT_EQ(outcome.status, 0);
+    const std::size_t bar = outcome.err.rfind("% "), wiped = outcome.err.rfind("\r\033[K");
+    ASSERT_TRUE(bar != std::string::npos && wiped != std::string::npos) << outcome.err;
+    EXPECT_LT(bar, wiped);
+    EXPECT_LT(wiped, outcome.err.find("400 x 300 pixels"));
 }
 
 }  // namespace

@@ -2,12 +2,14 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <pty.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
+#include <optional>
+#include <utility>
 
 #include "image/temporary_folder.hpp"
 
@@ -15,16 +17,13 @@ namespace raymill {
 
 namespace {
 
-/// In the child: never returns.
-[[noreturn]] void become_raymill(const std::vector<std::string>& arguments, const Surroundings& surroundings,
-                                 const std::string& out, const std::string& err) {
-    const auto redirect = [](int stream, const std::string& file, int flags) {
-        const int opened = ::open(file.c_str(), flags, 0600);
-        if (opened < 0 || ::dup2(opened, stream) < 0) ::_exit(126);
-    };
-    redirect(STDIN_FILENO, "/dev/null", O_RDONLY);
-    redirect(STDOUT_FILENO, out, O_WRONLY | O_CREAT);
-    redirect(STDERR_FILENO, err, O_WRONLY | O_CREAT);
+void redirect(int stream, const std::string& file, int flags) {
+    const int opened = ::open(file.c_str(), flags, 0600);
+    if (opened < 0 || ::dup2(opened, stream) < 0) ::_exit(126);
+}
+
+/// In the child, its streams connected: never returns.
+[[noreturn]] void become_raymill(const std::vector<std::string>& arguments, const Surroundings& surroundings) {
     if (!surroundings.folder.empty() && ::chdir(surroundings.folder.c_str()) != 0) ::_exit(126);
     for (const auto& [name, value] : surroundings.environment) ::setenv(name.c_str(), value.c_str(), 1);
     constexpr unsigned longest_run = 300;  // seconds; SIGALRM then ends what hangs
@@ -36,31 +35,69 @@ namespace {
     ::_exit(127);
 }
 
+/// The two ends of a terminal, closed at the end of the scope.
+struct Terminal {
+    int ours = -1, theirs = -1;
+    Terminal() {
+        if (::openpty(&ours, &theirs, nullptr, nullptr, nullptr) != 0)
+            throw std::system_error(errno, std::generic_category(), "openpty");
+    }
+    ~Terminal() {
+        ::close(ours);
+        close_theirs();
+    }
+    Terminal(const Terminal&) = delete;
+    Terminal& operator=(const Terminal&) = delete;
+    void close_theirs() {
+        if (theirs >= 0) ::close(std::exchange(theirs, -1));
+    }
+};
+
+/// Everything that the child writes on the terminal until it closes it.
+std::string read_terminal(Terminal& terminal, int pid, const Surroundings& surroundings) {
+    terminal.close_theirs();
+    std::string text;
+    char bytes[4096];
+    for (;;) {
+        const ssize_t count = ::read(terminal.ours, bytes, sizeof bytes);
+        if (count < 0 && errno == EINTR) continue;
+        if (count <= 0) return text;  // EIO: nobody has it open any more
+        text.append(bytes, static_cast<std::size_t>(count));
+        surroundings.watch_terminal(pid, text);
+    }
+}
+
+int wait_for(int pid) {
+    int status = 0;
+    while (::waitpid(pid, &status, 0) < 0 && errno == EINTR) {
+    }
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
 }  // namespace
 
 Outcome run_raymill(const std::vector<std::string>& arguments, const Surroundings& surroundings) {
     const TemporaryFolder folder;
     const std::string out = folder.file("out"), err = folder.file("err");
+    std::optional<Terminal> terminal;
+    if (surroundings.watch_terminal) terminal.emplace();
     const int pid = ::fork();
     if (pid < 0) throw std::system_error(errno, std::generic_category(), "fork");
-    if (pid == 0) become_raymill(arguments, surroundings, out, err);
-    if (surroundings.while_running) surroundings.while_running(pid);
-    int status = 0;
-    while (::waitpid(pid, &status, 0) < 0 && errno == EINTR) {
+    if (pid == 0) {
+        redirect(STDIN_FILENO, "/dev/null", O_RDONLY);
+        const bool elsewhere = !surroundings.standard_output.empty();
+        redirect(STDOUT_FILENO, elsewhere ? surroundings.standard_output : out, O_WRONLY | O_CREAT);
+        redirect(STDERR_FILENO, err, O_WRONLY | O_CREAT);
+        if (terminal && ::dup2(terminal->theirs, STDERR_FILENO) < 0) ::_exit(126);
+        if (terminal) ::close(terminal->theirs), ::close(terminal->ours);
+        become_raymill(arguments, surroundings);
     }
     Outcome outcome;
-    outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    outcome.out = read_bytes(out);
-    outcome.err = read_bytes(err);
+    if (terminal) outcome.err = read_terminal(*terminal, pid, surroundings);
+    outcome.status = wait_for(pid);
+    if (surroundings.standard_output.empty()) outcome.out = read_bytes(out);
+    if (!terminal) outcome.err = read_bytes(err);
     return outcome;
-}
-
-bool catches_signal(int pid, int signal) {
-    std::ifstream stream("/proc/" + std::to_string(pid) + "/status");
-    for (std::string line; std::getline(stream, line);)
-        if (line.starts_with("SigCgt:"))
-            return std::stoull(line.substr(line.find_first_not_of(" \t", 7)), nullptr, 16) >> (signal - 1) & 1;
-    return false;
 }
 
 std::string small_scene(const std::string& render_keys) {

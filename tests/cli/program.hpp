@@ -16,15 +16,14 @@ struct Outcome {
 
 struct Surroundings {
     std::string folder{};                              // to run in; empty: this one
+    std::string standard_output{};                     // a file that receives it in place of Outcome::out
     std::map<std::string, std::string> environment{};  // added to this one's
-    std::function<void(int pid)> while_running{};      // called once, right after the start
+    // Standard error is a terminal, and this is called with all that has appeared there whenever there is more.
+    std::function<void(int pid, const std::string& terminal)> watch_terminal{};
 };
 
 /// Runs `raymill` with these arguments and waits for its end.
 Outcome run_raymill(const std::vector<std::string>& arguments, const Surroundings& surroundings = {});
-
-/// Whether the process has installed a handler for the signal (Linux, /proc).
-bool catches_signal(int pid, int signal);
 
 /// A scene of a lit sphere above a plane, 24 x 18 pixels, with `render_keys` in its [render] table from line 3 on.
 std::string small_scene(const std::string& render_keys = "");

@@ -138,6 +138,33 @@ TEST_F(OneFilm, comes_of_a_capacity_that_is_chosen_by_itself) {
     expect_same(options_with(0, 256));
 }
 
+TEST_F(OneFilm, comes_of_rays_together_and_of_rays_alone) {
+    for (const Traversal traversal : {Traversal::packet, Traversal::single}) {
+        RenderOptions options = options_with(997);
+        options.traversal = traversal;
+        expect_same(options);
+    }
+}
+
+TEST_F(OneFilm, keeps_its_beauty_whatever_else_it_keeps) {
+    RenderOptions options = options_with(997, 8);
+    for (int plane = 0; plane < FILM_PLANES; ++plane) options.planes.keep(plane);
+    const Frame all = render(scene(), options);
+    const std::span<const cl_long> beauty = all.plane(FILM_BEAUTY);
+    ASSERT_EQ(beauty.size(), expected().sums.size());
+    EXPECT_TRUE(std::ranges::equal(beauty, expected().sums));
+    // The lecture's picture: six parts, whose sum is the whole to the last integer.
+    for (std::size_t i = 0; i < beauty.size(); ++i) {
+        if (i % FILM_CHANNELS == 3) continue;
+        cl_long sum = 0;
+        for (int plane = FILM_AMBIENT; plane <= FILM_REFRACTION; ++plane) sum += all.plane(plane)[i];
+        ASSERT_EQ(sum, beauty[i]) << "channel " << i;
+    }
+    options.memory.queue_capacity = 64;
+    options.work_group = 1;
+    EXPECT_EQ(render(scene(), options).hash(), all.hash());
+}
+
 TEST_F(OneFilm, comes_of_one_thread_and_of_two) {
     const unsigned threads = test_device().info.compute_units;
     if (threads < 2) GTEST_SKIP() << "the device has a single compute unit";

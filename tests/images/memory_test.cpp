@@ -42,7 +42,7 @@ normal = [0, 1, 0]
 }
 
 MemoryPlan plan_of(const Scene& scene, const MemoryRequest& request) {
-    return plan_memory(scene, bvh_of(scene), request, test_device().info);
+    return plan_memory(scene, bvh_of(scene), {}, request, test_device().info);
 }
 
 std::string refusal(const Scene& scene, const MemoryRequest& request) {
@@ -58,10 +58,10 @@ std::string refusal(const Scene& scene, const MemoryRequest& request) {
 /// array) are not worth a line of the plan: all together are below a page.
 constexpr std::uint64_t small_records = 4096;
 
-void expect_kept(const Scene& scene, std::uint64_t capacity) {
+void expect_kept(const Scene& scene, const RenderOptions& options) {
     const Bvh bvh = bvh_of(scene);
     const std::uint64_t before = allocated_bytes();
-    Renderer renderer(test_device(), scene, bvh, options_with(capacity));
+    Renderer renderer(test_device(), scene, bvh, options);
     renderer.render();
     const std::uint64_t allocated = allocated_bytes() - before;
     const std::uint64_t planned = renderer.memory().total();
@@ -71,9 +71,16 @@ void expect_kept(const Scene& scene, std::uint64_t capacity) {
 }
 
 TEST(the_memory_plan, is_what_a_frame_allocates) {
-    expect_kept(glass_scene(6), 5000);
-    expect_kept(glass_scene(0), 5000);
-    expect_kept(glass_scene(6), 1000);
+    expect_kept(glass_scene(6), options_with(5000));
+    expect_kept(glass_scene(0), options_with(5000));
+    expect_kept(glass_scene(6), options_with(1000));
+}
+
+TEST(the_memory_plan, is_what_a_frame_with_aovs_allocates) {
+    RenderOptions options = options_with(1000);
+    options.planes.keep_light();
+    options.planes.keep(FILM_NORMAL);
+    expect_kept(glass_scene(2), options);
 }
 
 TEST(the_memory_plan, has_two_queues_of_children_a_depth) {
@@ -125,8 +132,8 @@ TEST(a_memory_limit, refuses_queues_beyond_the_largest_buffer) {
     const Scene scene = glass_scene(6);
     DeviceInfo small = test_device().info;
     small.largest_buffer = 1 << 20;
-    EXPECT_THROW(plan_memory(scene, bvh_of(scene), {1 << 16, 0}, small), DeviceError);
-    EXPECT_LE(plan_memory(scene, bvh_of(scene), {0, 0}, small).queue_capacity * 2 * sizeof(Ray), 1u << 20);
+    EXPECT_THROW(plan_memory(scene, bvh_of(scene), {}, {1 << 16, 0}, small), DeviceError);
+    EXPECT_LE(plan_memory(scene, bvh_of(scene), {}, {0, 0}, small).queue_capacity * 2 * sizeof(Ray), 1u << 20);
 }
 
 TEST(human_bytes, have_a_unit_that_keeps_the_number_short) {

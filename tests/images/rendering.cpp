@@ -24,7 +24,7 @@ void write_checker_texture(const std::string& file) {
         }
     ImageMetadata metadata;
     metadata.full_width = metadata.full_height = size;
-    write_exr(file, image, metadata, ExrPixels::float32);
+    write_exr(file, image, {}, metadata, ExrPixels::float32);
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ TEST(BareModel, is_seen_whole_from_the_right_in_front_and_above) {
     }
 }
 
-TEST(BareModel, that_is_a_room_is_seen_and_lit_through_its_open_side) {
+TEST(BareModel, that_is_a_room_is_seen_through_its_open_side_and_lit_from_its_ceiling) {
     const std::pair<const char*, glm::dvec3> rooms[] = {
         {"+z", {0, 0, 1}}, {"-z", {0, 0, -1}}, {"+x", {1, 0, 0}}, {"-x", {-1, 0, 0}}};
     for (const auto& [open, out] : rooms) {
@@ -75,14 +75,43 @@ TEST(BareModel, that_is_a_room_is_seen_and_lit_through_its_open_side) {
         expect_framed(scene);
         const glm::dvec3 towards_eye = glm::normalize(scene.camera.eye - scene.camera.look_at);
         EXPECT_NEAR(glm::distance(towards_eye, out), 0, 1e-5) << open;  // six digits
-        const auto& key = std::get<DirectionalLight>(scene.lights.at(0).light);
-        EXPECT_LT(glm::dot(glm::dvec3(key.direction), out), -0.9) << open;
+        const auto& key = std::get<PointLight>(scene.lights.at(0).light);
+        EXPECT_GT(key.position.y, 0.5) << open;
+        EXPECT_LT(key.position.y, 1) << open;
+        EXPECT_LT(std::max(std::abs(key.position.x), std::abs(key.position.z)), 0.5) << open;
+        const auto& fill = std::get<PointLight>(scene.lights.at(1).light);
+        EXPECT_EQ(fill.position, glm::vec3(scene.camera.eye)) << open;
     }
 }
 
 TEST(BareModel, that_is_closed_or_open_twice_is_no_room) {
     for (const char* open : {"none", "+z-z", "+y"})
         EXPECT_GT(SceneFiles().obj(box_obj(open)).camera.eye.y, 0.1) << open;
+}
+
+TEST(BareModel, in_a_closed_room_is_seen_from_inside) {
+    const Scene scene = SceneFiles().obj(box_obj("none") + "v 0 0 0\nv .2 0 0\nv 0 .2 .1\nf -3 -2 -1\n");
+    const glm::dvec3 eye = glm::abs(scene.camera.eye);
+    EXPECT_LT(std::max({eye.x, eye.y, eye.z}), 1);
+    for (const glm::dvec3& corner : {glm::dvec3(0), glm::dvec3(0.2, 0, 0), glm::dvec3(0, 0.2, 0.1)}) {
+        const glm::dvec2 at = glm::abs(seen_at(scene, corner));
+        EXPECT_LE(std::max(at.x, at.y), 1);
+    }
+}
+
+TEST(BareModel, under_a_lamp_is_framed_without_it_and_a_room_is_lit_from_there) {
+    SceneFiles files;
+    files.write("a.mtl", "newmtl wall\nKd 1 1 1\nnewmtl lamp\nKe 3 3 3\n");
+    const std::string lamp = "usemtl lamp\nv .3 Y .4\nv .5 Y .4\nv .3 Y .6\nf -3 -1 -2\n";
+    const auto with_lamp_at = [&](const std::string& shape, const std::string& y) {
+        std::string text = "mtllib a.mtl\nusemtl wall\n" + shape + lamp;
+        for (std::size_t at; (at = text.find('Y')) != std::string::npos;) text.replace(at, 1, y);
+        return files.obj(text);
+    };
+    EXPECT_EQ(with_lamp_at(box_obj("none"), "50").camera.eye, SceneFiles().obj(box_obj("none")).camera.eye);
+    const Scene room = with_lamp_at(box_obj("+z"), ".9");
+    const auto& key = std::get<PointLight>(room.lights.at(0).light);
+    EXPECT_NEAR(glm::distance(key.position, glm::vec3(0.4f, 0.8f, 0.5f)), 0, 1e-5);  // six digits
 }
 
 TEST(BareModel, has_a_key_a_fill_and_an_ambient_light_that_do_not_overexpose) {
@@ -129,6 +158,13 @@ TEST(BareModel, and_the_scene_file_printed_for_it_are_the_same_scene) {
         EXPECT_EQ(written.settings.width, bare.settings.width);
         ASSERT_EQ(written.lights.size(), bare.lights.size());
         for (std::size_t i = 0; i < 2; ++i) {
+            ASSERT_EQ(written.lights[i].light.index(), bare.lights[i].light.index());
+            if (const auto* a = std::get_if<PointLight>(&written.lights[i].light)) {
+                const auto& b = std::get<PointLight>(bare.lights[i].light);
+                EXPECT_EQ(a->position, b.position);
+                EXPECT_EQ(a->intensity, b.intensity);
+                continue;
+            }
             const auto& a = std::get<DirectionalLight>(written.lights[i].light);
             const auto& b = std::get<DirectionalLight>(bare.lights[i].light);
             EXPECT_EQ(a.direction, b.direction);

@@ -228,6 +228,8 @@ TEST(Mtl, reflection_and_transmission_sum_to_at_most_one) {
 
 TEST(Mtl, without_illum_is_glass_or_mirror_where_its_numbers_say_so) {
     EXPECT_TRUE(mtl("Ks .04 .04 .04\nNi 1.6\nTf .95 .95 .95\n").fresnel);
+    const SceneMaterial glossy_paint = mtl("Kd .5 .6 .7\nKs .7 .7 .7\nTf .3 .3 .3\n");
+    EXPECT_EQ(glossy_paint.transmission + glossy_paint.reflection, 0);
     EXPECT_EQ(mtl("Kd .6 .6 .6\nNi 1.6\nd 0.05\n").ior, 1.6f);
     EXPECT_EQ(mtl("Ks 1 1 1\nNs 1000\n").reflection, 1);
     EXPECT_EQ(mtl("Kd .5 .5 .5\nKs 1 1 1\n").reflection, 0);

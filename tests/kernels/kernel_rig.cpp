@@ -1,0 +1,152 @@
+#include "kernel_rig.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+
+#include "device/program.hpp"
+#include "wavefront/stages.hpp"
+
+namespace raymill::test {
+
+namespace {
+
+std::string kernel_folder() {
+    const char* folder = std::getenv("RAYMILL_TEST_KERNELS");
+    return folder ? folder : "";
+}
+
+const Device& device() {
+    static const Device opened = open_device("", 0);
+    return opened;
+}
+
+Stages& stages() {
+    static Stages built(device(), 0, kernel_folder());
+    return built;
+}
+
+/// An output buffer of the kernel: `capacity` items and the guards.
+template <class T>
+Buffer<T> guarded(std::size_t capacity) {
+    const std::vector<unsigned char> bytes((capacity + GUARD_ITEMS) * sizeof(T), UNTOUCHED);
+    std::vector<T> items(capacity + GUARD_ITEMS);
+    std::memcpy(static_cast<void*>(items.data()), bytes.data(), bytes.size());
+    return Buffer<T>(device(), std::span<const T>(items));
+}
+
+template <class T>
+Buffer<T> filled(std::span<const T> items) {
+    return Buffer<T>(device(), items);
+}
+
+/// A cleared film for every pixel that the items name.
+template <class Item>
+Film film_for(std::span<const Item> items) {
+    std::size_t pixels = 1;
+    for (const Item& item : items) pixels = std::max<std::size_t>(pixels, item.pixel + 1);
+    Film film{{device(), (pixels + 1) * FILM_CHANNELS}, {device(), 1}};
+    film.sums.clear(device());
+    film.counters.clear(device());
+    return film;
+}
+
+FilmState read(const Film& film) {
+    const std::vector<cl_long> sums = film.sums.read(device());
+    return {{sums.begin(), sums.end()}, film.counters.read_one(device())};
+}
+
+}  // namespace
+
+struct KernelRig::Parts {
+    DeviceScene scene;
+};
+
+KernelRig::KernelRig(const Scene& scene)
+    : KernelRig(scene, build_bvh(scene.vertices, scene.triangles, scene.spheres)) {}
+
+KernelRig::KernelRig(const Scene& scene, const Bvh& bvh)
+    : parts_(std::make_unique<Parts>(Parts{DeviceScene(device(), scene, bvh)})) {}
+
+KernelRig::~KernelRig() = default;
+
+std::vector<Ray> KernelRig::generate(std::uint64_t first_sample, uint count) const {
+    Buffer<Ray> rays = guarded<Ray>(count);
+    stages().generate(parts_->scene, first_sample, count, rays);
+    return rays.read(device());
+}
+
+IntersectResult KernelRig::intersect(std::span<const Ray> rays, uint first) const {
+    const uint count = static_cast<uint>(rays.size()) - first;
+    const Buffer<Ray> queue = filled(rays);
+    Buffer<Hit> hits = guarded<Hit>(count);
+    Film film = film_for(rays);
+    stages().intersect(parts_->scene, {queue, first, count}, hits, film);
+    return {hits.read(device()), read(film)};
+}
+
+ShadeResult KernelRig::shade(std::span<const Ray> rays, std::span<const Hit> hits, uint first_slot, uint slot_count,
+                             uint first) const {
+    const Buffer<Ray> queue = filled(rays);
+    const Buffer<Hit> hit_queue = filled(hits);
+    const std::size_t segments = std::size_t{Stages::chunks(static_cast<uint>(hits.size()))} * slot_count;
+    ShadowQueue shadow{guarded<ShadowRay>(segments * CHUNK), guarded<uint>(segments)};
+    Film film = film_for(rays);
+    stages().shade(parts_->scene, {queue, first, static_cast<uint>(hits.size())}, hit_queue, {first_slot, slot_count},
+                   shadow, film);
+    return {shadow.rays.read(device()), shadow.counts.read(device()), read(film)};
+}
+
+FilmState KernelRig::shadow(std::span<const ShadowRay> rays, std::span<const uint> counts) const {
+    const ShadowQueue queue{filled(rays), filled(counts)};
+    Film film = film_for(rays);
+    stages().shadow(parts_->scene, queue, static_cast<uint>(counts.size()), film);
+    return read(film);
+}
+
+SecondaryResult KernelRig::secondary(std::span<const Ray> rays, std::span<const Hit> hits, uint capacity,
+                                     uint first) const {
+    const Buffer<Ray> queue = filled(rays);
+    const Buffer<Hit> hit_queue = filled(hits);
+    const Buffer<Ray> children = guarded<Ray>(capacity);
+    Buffer<Ray> within = children.first(capacity);
+    Film film = film_for(rays);
+    stages().secondary(parts_->scene, {queue, first, static_cast<uint>(hits.size())}, hit_queue, within, film);
+    return {children.read(device()), read(film)};
+}
+
+std::vector<float> resolve_on_device(std::span<const std::int64_t> sums, uint spp) {
+    const std::vector<cl_long> values(sums.begin(), sums.end());
+    const Film film{{device(), std::span<const cl_long>(values)}, {device(), 1}};
+    const Buffer<float> pixels = guarded<float>(values.size());
+    Buffer<float> within = pixels.first(values.size());
+    stages().resolve(film, spp, within);
+    return pixels.read(device());
+}
+
+std::vector<uint> run_probe(const std::string& file, const char* name, const std::vector<std::vector<uint>>& inputs,
+                            uint items, uint selector, std::size_t output_words) {
+    const std::string folder = kernel_folder().empty() ? RAYMILL_SOURCE_DIR "/kernels" : kernel_folder();
+    static std::map<std::string, cl::Program> programs;
+    if (!programs.contains(file)) {
+        const std::filesystem::path path = RAYMILL_SOURCE_DIR "/tests/kernels/" + file;
+        const std::string name_in_folder = std::filesystem::relative(path, folder).string();
+        programs.emplace(file, build_program(device(), {name_in_folder}, folder));
+    }
+    cl::Kernel kernel = make_kernel(programs.at(file), name);
+    std::vector<Buffer<uint>> buffers;
+    cl_uint index = 0;
+    for (const std::vector<uint>& input : inputs) {
+        buffers.push_back(filled(std::span<const uint>(input)));
+        kernel.setArg(index++, buffers.back().memory());
+    }
+    const Buffer<uint> output = guarded<uint>(output_words);
+    kernel.setArg(index++, items);
+    kernel.setArg(index++, selector);
+    kernel.setArg(index++, output.memory());
+    device().queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(items));
+    return output.read(device());
+}
+
+}  // namespace raymill::test

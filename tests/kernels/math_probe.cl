@@ -1,0 +1,41 @@
+// The elementary functions of lib/math.h and lib/random.h, item by item.
+
+#include "lib/sampling.h"
+
+/// Four words of output an item. selector names the function; a and b are its arguments as bits.
+kernel void math_probe(global const uint* a, global const uint* b, uint items, uint selector, global uint* out) {
+    const uint i = get_global_id(0);
+    if (i >= items) return;
+    const float x = as_float(a[i]), y = as_float(b[i]);
+    float4 r = (float4)(0.0f);
+    if (selector == 0) r.x = exp2_exact(x);
+    if (selector == 1) r.x = log2_exact(x);
+    if (selector == 2) r.x = power(x, y);
+    if (selector == 3) r.xyz = exp_minus((float3)(x, y, 0.0f));
+    if (selector == 4) r.xy = cos_sin_turns(x);
+    if (selector == 5) r.x = angle_of(y, x);
+    if (selector == 6) r.xy = concentric_disk((float2)(x, y));
+    vstore4(as_uint4(r), i, out);
+}
+
+/// Eight words of output an item: the two tangents of a unit normal (x, y, z).
+kernel void tangents_probe(global const uint* x, global const uint* y, global const uint* z, uint items, uint selector,
+                           global uint* out) {
+    const uint i = get_global_id(0);
+    if (i >= items || selector != 0) return;
+    float3 t, u;
+    tangents((float3)(as_float(x[i]), as_float(y[i]), as_float(z[i])), &t, &u);
+    vstore4(as_uint4((float4)(t, 0.0f)), 2 * i, out);
+    vstore4(as_uint4((float4)(u, 0.0f)), 2 * i + 1, out);
+}
+
+/// Two words of output an item: stratified_point of (index, key).
+kernel void stratified_probe(global const uint* index, global const uint* key, uint items, uint selector,
+                             global uint* out) {
+    const uint i = get_global_id(0);
+    if (i >= items || selector != 0) return;
+    uint x, y;
+    stratified_point(index[i], key[i], &x, &y);
+    out[2 * i] = x;
+    out[2 * i + 1] = y;
+}

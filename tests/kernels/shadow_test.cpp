@@ -1,0 +1,189 @@
+// Visibility against the reference's, ray by ray, and what the film makes of it, to the integer.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "kernel_rig.hpp"
+#include "queues.hpp"
+#include "random.hpp"
+
+namespace raymill::test {
+namespace {
+
+using glm::dvec3;
+
+/// Filters are powers of two, so that their products are exact in either precision.
+Scene obstacles(ShadowMode mode, bool any_opaque) {
+    Mesh mesh = random_soup(120, 51, 0.25f);
+    mesh.spheres = random_spheres(150, 52).spheres;
+    Scene scene = scene_of(mesh);
+    scene.settings.shadows = mode;
+    const float transmissions[] = {0, 0.5f, 0.25f, 1};
+    const glm::vec3 colors[] = {{1, 1, 1}, {1, 0.5f, 0.25f}, {0.5f, 0, 1}, {1, 1, 1}};
+    for (int i = 0; i < 4; ++i) {
+        if (i > 0) scene.materials.emplace_back();
+        scene.materials.back().transmission = transmissions[i];
+        scene.materials.back().base_color = colors[i];
+    }
+    Random random(53);
+    const auto any = [&] { return any_opaque && random.below(6) == 0 ? 0 : 1 + random.below(3); };
+    for (Triangle& triangle : scene.triangles) triangle.material = any();
+    for (Sphere& sphere : scene.spheres) sphere.material = any();
+    add_plane(scene, {0, 0.5f, 0}, {0, 1, 0}, 1);
+    add_plane(scene, {0.5f, 0, 0}, glm::normalize(glm::vec3(3, 1, 2)), 2);
+    return scene;
+}
+
+struct Segments {
+    std::vector<ShadowRay> rays;  // CHUNK a segment; only the first `counts` of them are part of the queue
+    std::vector<uint> counts;
+};
+
+/// A pixel each; segments are empty, full and in between. Terms are multiples of 1/64: sums and filtered products are
+/// exact.
+Segments random_segments(std::size_t segments, std::uint32_t seed) {
+    Random random(seed);
+    Segments queue;
+    const uint sizes[] = {CHUNK, 0, 1, CHUNK - 1, 17};
+    for (uint segment = 0; segment < segments; ++segment) {
+        queue.counts.push_back(sizes[segment % 5]);
+        for (uint i = 0; i < CHUNK; ++i) {
+            const glm::vec3 origin = random.in_cube(-0.2f, 1.2f), target = random.in_cube(-0.2f, 1.2f);
+            ShadowRay ray{};
+            store(ray.origin, origin);
+            store(ray.direction, towards(origin, target));
+            ray.t_max = random.below(4) == 0 ? INFINITY : glm::length(target - origin);
+            ray.pixel = segment * CHUNK + i;
+            ray.route = random.below(3);
+            for (int k = 0; k < 3; ++k) {
+                ray.diffuse[k] = static_cast<float>(random.below(256)) / 64;
+                ray.specular[k] = static_cast<float>(random.below(256)) / 64;
+            }
+            queue.rays.push_back(ray);
+        }
+    }
+    return queue;
+}
+
+reference::Ray exact(const ShadowRay& ray) {
+    return {reference::to_dvec3(ray.origin), reference::to_dvec3(ray.direction)};
+}
+
+/// Whether a segment within rounding of this one sees that colour: its origin moved by 16 roundings of coordinates and
+/// length (below 4) across it and along it, its end as far.
+bool may_be_seen(const reference::Tracer& tracer, const ShadowRay& shadow_ray, const auto& agrees) {
+    const reference::Ray ray = exact(shadow_ray);
+    const dvec3 across =
+        glm::normalize(glm::cross(ray.direction, std::abs(ray.direction.x) < 0.7 ? dvec3(1, 0, 0) : dvec3(0, 1, 0)));
+    const dvec3 other = glm::cross(ray.direction, across);
+    const double step = 16 * ROUNDING * 4;
+    for (int i = 0; i < 16; ++i)
+        for (const double end : {-step, 0.0, step})
+            for (const double along : {-step, 0.0, step}) {
+                reference::Ray moved = ray;
+                const double angle = i * 0.3926990816987;
+                moved.origin += step * (std::cos(angle) * across + std::sin(angle) * other) + along * ray.direction;
+                if (agrees(tracer.visibility(moved, shadow_ray.t_max + end - along))) return true;
+            }
+    return false;
+}
+
+void expect_reference_visibility(const Scene& scene, std::uint32_t seed) {
+    const Segments queue = random_segments(75, seed);
+    const FilmState film = KernelRig(scene).shadow(queue.rays, queue.counts);
+    const reference::Tracer tracer(scene);
+    std::size_t decided_by_rounding = 0, rays = 0, dark = 0;
+    for (std::size_t i = 0; i < queue.rays.size(); ++i) {
+        const ShadowRay& ray = queue.rays[i];
+        const std::int64_t* sums = &film.sums[i * FILM_CHANNELS];
+        if (i % CHUNK >= queue.counts[i / CHUNK]) {
+            for (int k = 0; k < 3; ++k) ASSERT_EQ(sums[k], 0) << "beyond the end of segment " << i / CHUNK;
+            continue;
+        }
+        ++rays;
+        const auto agrees = [&](const dvec3& visible) {
+            bool all = true;
+            for (int k = 0; k < 3; ++k) {
+                const double light = visible[k] * (double{ray.diffuse[k]} + double{ray.specular[k]});
+                all &= sums[k] == film_units(static_cast<float>(visible[k] * ray.diffuse[k])) +
+                                      film_units(static_cast<float>(visible[k] * ray.specular[k])) &&
+                       std::abs(static_cast<double>(sums[k]) * 0x1p-32 - light) <= 0x1p-32;
+            }
+            return all;
+        };
+        const dvec3 visible = tracer.visibility(exact(ray), ray.t_max);
+        dark += visible == dvec3(0);
+        if (agrees(visible)) continue;
+        ++decided_by_rounding;
+        ASSERT_TRUE(may_be_seen(tracer, ray, agrees))
+            << "ray " << i << " sees " << visible.x << " " << visible.y << " " << visible.z << ", adds "
+            << static_cast<double>(sums[0]) * 0x1p-32;
+    }
+    // Within 1e-5 of one of some 30 edges and limbs of size 0.2: one in 700.
+    EXPECT_LE(decided_by_rounding, rays / 200);
+    EXPECT_NEAR(static_cast<double>(film.counters.shadow_blocked), static_cast<double>(dark),
+                static_cast<double>(decided_by_rounding));
+    if (scene.settings.shadows != ShadowMode::none) {
+        EXPECT_GT(dark, rays / 20);
+    }
+    EXPECT_LT(dark, rays);
+}
+
+TEST(Shadow, filtered_rays_see_what_the_reference_sees) {
+    expect_reference_visibility(obstacles(ShadowMode::filtered, true), 61);
+}
+TEST(Shadow, opaque_rays_see_what_the_reference_sees) {
+    expect_reference_visibility(obstacles(ShadowMode::opaque, true), 62);
+}
+TEST(Shadow, filtered_rays_without_any_filter_are_blocked_by_everything) {
+    Scene scene = obstacles(ShadowMode::filtered, true);
+    for (SceneMaterial& material : scene.materials) material.transmission = 0;
+    expect_reference_visibility(scene, 63);
+}
+TEST(Shadow, rays_without_shadows_see_everything) {
+    const Scene scene = obstacles(ShadowMode::none, true);
+    expect_reference_visibility(scene, 64);
+}
+
+TEST(Shadow, a_blocked_ray_adds_nothing_and_is_counted) {
+    Scene scene;
+    scene.materials.emplace_back();
+    add_sphere(scene, {0, 0, 5}, 1);
+    std::vector<ShadowRay> rays(CHUNK);
+    for (uint i = 0; i < 3; ++i) {
+        store(rays[i].direction, {0, 0, i == 2 ? -1 : 1});
+        rays[i].t_max = i == 0 ? 10.0f : 3.5f;  // through, before, away from the sphere
+        rays[i].pixel = i;
+        store(rays[i].diffuse, {1, 2, 3});
+    }
+    const FilmState film = KernelRig(scene).shadow(rays, std::vector<uint>{3});
+    for (int k = 0; k < 3; ++k) {
+        EXPECT_EQ(film.at(0, k), 0);
+        EXPECT_EQ(film.at(1, k), film_units(static_cast<float>(k + 1)));
+        EXPECT_EQ(film.at(2, k), film_units(static_cast<float>(k + 1)));
+    }
+    EXPECT_EQ(film.counters.shadow_blocked, 1u);
+}
+
+TEST(Shadow, a_parallel_ray_to_a_directional_light_is_not_blocked_by_a_plane) {
+    Scene scene;
+    scene.materials.emplace_back();
+    add_plane(scene, {0, 1, 0}, {0, 1, 0});
+    std::vector<ShadowRay> rays(CHUNK);
+    for (uint i = 0; i < 4; ++i) {
+        store(rays[i].origin, {0, i < 2 ? 0 : 2, 0});
+        store(rays[i].direction, {i % 2 ? 1 : -1, 0, 0});
+        rays[i].t_max = INFINITY;
+        rays[i].pixel = i;
+        rays[i].diffuse[0] = 1;
+    }
+    for (const float transmission : {0.0f, 0.5f}) {
+        scene.materials[0].transmission = transmission;
+        const FilmState film = KernelRig(scene).shadow(rays, std::vector<uint>{4});
+        for (uint i = 0; i < 4; ++i) EXPECT_EQ(film.at(i, 0), film_units(1)) << i;
+    }
+}
+
+}  // namespace
+}  // namespace raymill::test
