@@ -19,6 +19,49 @@ void compare_units(Comparison& c, const char* name, const Units& units, const Bo
                  expected.error[k] + film_rounding);
 }
 
+/// Where a shadow ray starts and goes, with bounds of each coordinate, of the direction's length, and of the distance.
+struct Aim {
+    dvec3 origin, direction;
+    double distance;
+    double origin_error, direction_error, distance_error;
+    bool lifted;
+};
+
+Aim aim_of(const Truth& truth, const HitContext& context, const LightBounds& light) {
+    const SurfaceBounds& bounds = context.bounds;
+    const bool robust = truth.scene.settings.shadow_offset == ShadowOffset::robust;
+    Aim aim{context.surface.position,
+            light.sample.direction,
+            light.sample.distance,
+            robust ? bounds.offset : 2 * bounds.position,
+            light.direction,
+            light.distance,
+            false};
+    if (!robust || !context.surface.smooth) return aim;
+    // From the curved surface, towards the same point of the light.
+    const reference::Ray ray = truth.tracer.shadow_ray(context.ray, context.hit, context.surface, light.sample);
+    aim.lifted = true;
+    aim.origin = ray.origin;
+    // The lift is a mean of heights over the vertices' tangent planes: what the position errs by, and ten roundings of
+    // the triangle's size.
+    double size = 0;
+    const Triangle& triangle = truth.scene.triangles[context.hit.primitive];
+    for (const uint vertex : triangle.vertex)
+        size = std::max(
+            size, glm::length(reference::to_dvec3(truth.scene.vertices[vertex].position) - context.surface.position));
+    aim.origin_error += diagonal * bounds.position + 10 * rounding * size;
+    if (!(light.sample.distance < INFINITY)) return aim;
+    const double stretch = std::max(glm::length(ray.direction), 1e-300);
+    aim.direction = ray.direction / stretch;
+    aim.distance = stretch * light.sample.distance;
+    // The kernel aims from where the ray starts, off the surface; the reference from the surface itself.
+    const double moved = diagonal * aim.origin_error;
+    aim.direction_error =
+        (light.direction * light.sample.distance + light.distance + moved) / aim.distance + 4 * rounding;
+    aim.distance_error = light.distance + light.direction * light.sample.distance + moved + 4 * rounding * aim.distance;
+    return aim;
+}
+
 /// Beer-Lambert along the segment that ended here.
 Bounded absorption_of(const SceneMaterial& material, const reference::Ray& ray, const reference::Hit& hit,
                       bool inside) {
@@ -84,7 +127,9 @@ Comparison compare_shadow_ray(const Truth& truth, const HitContext& context, con
     const double height =
         glm::dot(light.sample.direction, context.surface.geometric_normal) * (context.surface.inside ? -1 : 1);
     const double height_margin = std::abs(height) / (context.bounds.geometric_normal + light.direction + 4 * rounding);
-    const double undecided = std::min(height_margin, context.bounds.facing);
+    // A smooth surface is guarded by its shading normal alone.
+    const double undecided =
+        context.surface.smooth ? context.bounds.facing : std::min(height_margin, context.bounds.facing);
 
     Comparison c;
     if (!shadow_ray) {
@@ -95,10 +140,15 @@ Comparison compare_shadow_ray(const Truth& truth, const HitContext& context, con
         if (!(c.ratio() <= 1)) c.disagree("the kernel sends no shadow ray where the reference does", undecided);
         return c;
     }
-    compare_start(c, truth, context, shadow_ray->origin, 1);
-    c.vector("direction", shadow_ray->direction, light.sample.direction, dvec3(light.direction));
-    c.number("t_max", shadow_ray->t_max, light.sample.shadow_distance,
-             light.distance + 4 * rounding * light.sample.distance);
+    const Aim aim = aim_of(truth, context, light);
+    if (aim.lifted)
+        c.vector("origin", shadow_ray->origin, aim.origin, dvec3(aim.origin_error));
+    else
+        compare_start(c, truth, context, shadow_ray->origin, 1);
+    c.vector("direction", shadow_ray->direction, aim.direction, dvec3(aim.direction_error));
+    const bool endless = !(light.sample.distance < INFINITY);
+    const double reach = endless ? 1 : light.sample.shadow_distance / light.sample.distance;
+    c.number("t_max", shadow_ray->t_max, aim.distance * reach, aim.distance_error + 4 * rounding * aim.distance);
     c.vector("diffuse", shadow_ray->diffuse, diffuse.value, diffuse.error);
     c.vector("specular", shadow_ray->specular, specular.value, specular.error);
     c.same("pixel", shadow_ray->pixel, ray.pixel);

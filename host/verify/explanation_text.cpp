@@ -133,7 +133,7 @@ class Writer {
     }
 
     static const char* why_no_shadow_ray(const HitContext& context, const LightTerms& terms) {
-        if (terms.geometric_n_dot_l <= 0) return "the light is behind the surface";
+        if (!context.surface.smooth && terms.geometric_n_dot_l <= 0) return "the light is behind the surface";
         if (terms.sample.incoming == dvec3(0)) return "the light does not shine here";
         if (context.local.value == dvec3(0)) return "local illumination has no weight";
         if (terms.n_dot_l <= 0) return "the light is behind the shading normal";

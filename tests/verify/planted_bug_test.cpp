@@ -23,7 +23,7 @@ void PrintTo(const PlantedBug& bug, std::ostream* out) {
 const PlantedBug bugs[] = {
     {"pixel_offset", "lib/camera.h", "((float)s.y + jitter.y)", "((float)s.y + jitter.x)", "generate"},
     {"wrong_triangle_weight", "lib/triangle.h", "*u = va * inverse", "*u = wa * inverse", "intersect"},
-    {"far_end_of_spheres", "lib/sphere.h", "select(far, near, near > t_min)", "far", "intersect"},
+    {"far_end_of_spheres", "lib/sphere.h", "near = min8(t0, t1)", "near = max8(t0, t1)", "intersect"},
     {"no_attenuation", "lib/light.h", "return 1.0f / fma(", "return 1.0f; return fma(", "shade"},
     {"attenuation_off_by_1e_5", "lib/light.h", "return 1.0f / fma(", "return 1.00001f / fma(", "shade"},
     {"no_offset", "lib/surface.h", "if (!world->constants->robust_offset) return s->position;", "return s->position;",

@@ -1,6 +1,7 @@
 // The whole frame through the reference.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <tuple>
 
 #include "frame.hpp"
@@ -66,6 +67,27 @@ TEST(Verify, an_empty_scene_has_but_camera_rays_and_background) {
     EXPECT_EQ(report_of(reports, "intersect").compared(), 81u);
     EXPECT_EQ(report_of(reports, "shade").items(), 0u);
 }
+
+class Gallery : public testing::TestWithParam<std::string> {};
+
+TEST_P(Gallery, a_thumbnail_of_the_scene_is_within_its_bounds) {
+    Scene scene = load_scene(RAYMILL_SOURCE_DIR "/scenes/" + GetParam() + ".toml");
+    scene.settings.width = 32;
+    scene.settings.height = 24;
+    scene.settings.spp = 1;
+    VerifyOptions options;
+    options.primitive_tests = 20'000'000;  // a second or two for each scene
+    TestFrame frame(std::move(scene), {}, 1024);
+    for (const StageReport& report : verify_frame(frame.device, frame.scene, frame.renderer, options))
+        EXPECT_EQ(report.failures(), 0u) << report.stage() << "\n" << report.first_failure();
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Gallery, testing::Values("box", "first-light", "glass-and-straw", "hall-of-mirrors"),
+                         [](const auto& info) {
+                             std::string name = info.param;
+                             std::ranges::replace(name, '-', '_');
+                             return name;
+                         });
 
 }  // namespace
 }  // namespace raymill::verify
