@@ -71,18 +71,25 @@ TEST(Guard, neither_below_the_shading_nor_below_the_geometric_surface) {
     material.specular = glm::vec3(1);
     material.shininess = 0;  // the highlight is 1 wherever it is let through
     DirectionalLight light;
-    const auto terms = [&](const glm::vec3& to_light) {
+    const auto terms = [&](const glm::vec3& to_light, ShadowMode shadows) {
         SceneBuilder b = smooth_triangle(material, leaning);
+        b.scene.settings.shadows = shadows;
         light.direction = -to_light;
         b.add_light(light);
         return first_terms(b.scene, to_origin({0, 3, 0}));
     };
-    EXPECT_GT(terms({0, 1, 0}).diffuse.x, 0);
-    EXPECT_EQ(terms({0, 1, 0}).specular, dvec3(1));
-    for (const glm::vec3 dark : {glm::vec3(-0.9f, 0.1f, 0), glm::vec3(0.9f, -0.1f, 0)}) {
-        EXPECT_EQ(terms(dark).diffuse, dvec3(0));
-        EXPECT_EQ(terms(dark).specular, dvec3(0));
+    const glm::vec3 above(0, 1, 0), below_shading(-0.9f, 0.1f, 0), below_geometric(0.9f, -0.1f, 0);
+    EXPECT_GT(terms(above, ShadowMode::none).diffuse.x, 0);
+    EXPECT_EQ(terms(above, ShadowMode::none).specular, dvec3(1));
+    for (const glm::vec3 dark : {below_shading, below_geometric}) {
+        EXPECT_EQ(terms(dark, ShadowMode::none).diffuse, dvec3(0));
+        EXPECT_EQ(terms(dark, ShadowMode::none).specular, dvec3(0));
     }
+    // With shadows it is the shadow ray, which starts on the curved surface, that tells what is below that.
+    EXPECT_EQ(terms(below_shading, ShadowMode::opaque).diffuse, dvec3(0));
+    EXPECT_GT(terms(below_geometric, ShadowMode::opaque).diffuse.x, 0);
+    material.shading = Shading::flat;
+    EXPECT_EQ(terms(below_geometric, ShadowMode::opaque).diffuse, dvec3(0));
 }
 
 TEST(Shading, flat_uses_the_face_and_phong_the_renormalised_interpolation) {
@@ -149,17 +156,29 @@ TEST(Gouraud, an_area_light_keeps_what_it_gives_to_the_pixel) {
     EXPECT_NEAR(first_terms(b.scene, ray).diffuse.x, cosines / 3 * s.incoming.x, rounding);
 }
 
-TEST(Gouraud, spheres_and_flat_faces_are_shaded_at_the_pixel) {
+TEST(Gouraud, spheres_are_shaded_at_the_pixel) {
     SceneMaterial smooth, gouraud;
     gouraud.shading = Shading::gouraud;
     const auto terms = [](const SceneMaterial& material) {
         SceneBuilder b = lit_floor({}, {1, 3, 2});
         b.add_sphere({0, 2, 0}, 0.5f, b.add_material(material));
-        b.add_triangle({glm::vec3(2, 1, 1), glm::vec3(4, 1, 1), glm::vec3(3, 1, -2)}, b.add_material(material));
-        return std::array{first_terms(b.scene, {{0.1, 5, 0.2}, {0, -1, 0}}).diffuse,
-                          first_terms(b.scene, {{3.1, 5, 0.2}, {0, -1, 0}}).diffuse};
+        return first_terms(b.scene, {{0.1, 5, 0.2}, {0, -1, 0}}).diffuse;
     };
+    EXPECT_GT(terms(smooth).x, 0);
     EXPECT_EQ(terms(gouraud), terms(smooth));
+}
+
+TEST(Gouraud, a_face_without_normals_has_its_own_at_each_vertex) {
+    SceneMaterial gouraud;
+    gouraud.diffuse = glm::vec3(1);
+    gouraud.shading = Shading::gouraud;
+    SceneBuilder b = lit_floor({}, {1, 3, 2});
+    b.add_triangle({glm::vec3(2, 1, 1), glm::vec3(4, 1, 1), glm::vec3(3, 1, -2)}, b.add_material(gouraud));
+    const dvec3 diffuse = first_terms(b.scene, {{3.1, 5, 0.2}, {0, -1, 0}}).diffuse;
+    // n.l at the vertices: the light is 2 above the face, and sqrt(6), sqrt(14), sqrt(24) away from them.
+    const double v = 0.8 / 3, u = (1.1 - v) / 2;
+    const double expected = 2 * ((1 - u - v) / std::sqrt(6) + u / std::sqrt(14) + v / std::sqrt(24));
+    expect_near(diffuse, dvec3(expected), rounding);
 }
 
 TEST(DiffuseColor, a_checker_alternates_in_all_three_directions) {
