@@ -12,13 +12,16 @@ static bool intersect_together(const Geometry* geometry, global const Ray* rays,
 #ifdef RAYMILL_PACKETS
     Packet packet;
     float3 origins[CHUNK], directions[CHUNK];
-    packet_start(&packet);
     for (uint i = 0; i < count; ++i) {
         origins[i] = load3(rays[i].origin);
         directions[i] = load3(rays[i].direction);
+    }
+    if (!are_coherent(directions, count)) return false;
+    packet_start(&packet);
+    for (uint i = 0; i < count; ++i) {
         packet_add(&packet, origins[i], directions[i], closest_plane(geometry, origins[i], directions[i], INFINITY));
     }
-    if (!packet_is_coherent(&packet)) return false;
+    packet_fill(&packet);
     traverse_packet(geometry, &packet, false, origins, directions);
     for (uint i = 0; i < count; ++i) hits[i] = packet_hit(&packet, i);
     return true;

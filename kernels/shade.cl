@@ -31,6 +31,7 @@ kernel void shade(global const Ray* rays, uint first_ray, uint count, global con
             film_add_radiance(&film, FILM_AMBIENT, ray->route, ray->pixel, ambient_radiance(&world, &shading));
             film_add_radiance(&film, FILM_EMISSION, ray->route, ray->pixel, emitted_radiance(&shading));
         }
+        if (!answers_light(&shading)) continue;
         for (uint k = 0; k < slot_count; ++k) {
             const LightSlot slot = slots[first_slot + k];
             global ShadowRay* shadow_ray = shadow_rays + (chunk * slot_count + k) * CHUNK + pushed[k];

@@ -13,15 +13,18 @@ static bool look_together(const Geometry* geometry, global const ShadowRay* rays
 #ifdef RAYMILL_PACKETS
     Packet packet;
     float3 origins[CHUNK], directions[CHUNK];
-    packet_start(&packet);
     for (uint i = 0; i < count; ++i) {
         origins[i] = load3(rays[i].origin);
         directions[i] = load3(rays[i].direction);
+    }
+    if (!are_coherent(directions, count)) return false;
+    packet_start(&packet);
+    for (uint i = 0; i < count; ++i) {
         Hit best = closest_plane(geometry, origins[i], directions[i], rays[i].t_max);
         if (best.primitive != NO_INDEX) best.t = -1.0f;
         packet_add(&packet, origins[i], directions[i], best);
     }
-    if (!packet_is_coherent(&packet)) return false;
+    packet_fill(&packet);
     traverse_packet(geometry, &packet, true, origins, directions);
     for (uint i = 0; i < count; ++i)
         if (packet.best_primitive[i] == NO_INDEX) *clear |= 1ul << i;

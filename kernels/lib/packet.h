@@ -25,20 +25,35 @@ typedef struct {
     uint axis[3];  // of the triangle frame, the same for all rays
     uint sign[3];  // of the slab frame, the same for all rays
     float3 lower_origin, upper_origin, lower_inverse, upper_inverse;
-    float3 lower_direction, upper_direction;
     float3 margin;  // what rounding may take from or add to a distance to a plane, at most
     float farthest;  // largest best_t
     uint count;
-    bool uniform;  // all rays have the same axes and signs
 } Packet;
 
+/// Whether rays with these directions share so much of the hierarchy that they are better traced together. Coherent rays
+/// have the same largest axis and the same signs, which the packet's arithmetic relies on.
+static inline bool are_coherent(const float3* directions, uint count) {
+    if (count <= GROUP) return false;
+    float3 lower = directions[0], upper = directions[0];
+    int3 different_signs = (int3)(0);
+    bool same_axis = true;
+    const uint axis = largest_axis(directions[0]);
+    for (uint i = 1; i < count; ++i) {
+        lower = fmin(lower, directions[i]);
+        upper = fmax(upper, directions[i]);
+        different_signs |= as_int3(directions[i]) ^ as_int3(directions[0]);
+        same_axis &= largest_axis(directions[i]) == axis;
+    }
+    return same_axis && !any(different_signs) && max3(upper - lower) <= COHERENT_SPREAD;
+}
+
+/// Call packet_add() for each of at most CHUNK coherent rays, then packet_fill().
 static inline void packet_start(Packet* p) {
-    p->lower_origin = p->lower_inverse = p->lower_direction = (float3)(INFINITY);
-    p->upper_origin = p->upper_inverse = p->upper_direction = (float3)(-INFINITY);
+    p->lower_origin = p->lower_inverse = (float3)(INFINITY);
+    p->upper_origin = p->upper_inverse = (float3)(-INFINITY);
     p->margin = (float3)(0.0f);
     p->farthest = -1.0f;
     p->count = 0;
-    p->uniform = true;
 }
 
 /// Adds a ray whose best hit so far is `best`.
@@ -52,8 +67,6 @@ static inline void packet_add(Packet* p, float3 origin, float3 direction, Hit be
         p->axis[2] = frame.z;
         for (uint axis = 0; axis < 3; ++axis) p->sign[axis] = slabs.sign[axis];
     }
-    p->uniform &= p->axis[0] == frame.x && p->axis[1] == frame.y && p->axis[2] == frame.z &&
-                  p->sign[0] == slabs.sign[0] && p->sign[1] == slabs.sign[1] && p->sign[2] == slabs.sign[2];
     p->origin[0][i] = frame.origin_x;
     p->origin[1][i] = frame.origin_y;
     p->origin[2][i] = frame.origin_z;
@@ -74,16 +87,12 @@ static inline void packet_add(Packet* p, float3 origin, float3 direction, Hit be
     p->upper_origin = fmax(p->upper_origin, origin);
     p->lower_inverse = fmin(p->lower_inverse, slabs.inverse);
     p->upper_inverse = fmax(p->upper_inverse, slabs.inverse);
-    p->lower_direction = fmin(p->lower_direction, direction);
-    p->upper_direction = fmax(p->upper_direction, direction);
     // near and far are an error of three roundings apart from the middle, each rounded once more; planes add two.
     p->margin = fmax(p->margin, 2.0f * (slabs.far - slabs.near));
 }
 
-/// Fills the missing rays; false if the rays are better traced one by one.
-static inline bool packet_is_coherent(Packet* p) {
-    if (!p->uniform || p->count <= GROUP || max3(p->upper_direction - p->lower_direction) > COHERENT_SPREAD)
-        return false;
+/// Fills the places of missing rays: call after the last packet_add().
+static inline void packet_fill(Packet* p) {
     for (uint i = p->count; i < CHUNK; ++i) {
         for (uint axis = 0; axis < 3; ++axis) {
             p->origin[axis][i] = p->origin[axis][0];
@@ -95,7 +104,6 @@ static inline bool packet_is_coherent(Packet* p) {
         p->best_t[i] = -1.0f;
         p->best_primitive[i] = NO_INDEX;
     }
-    return true;
 }
 
 /// What ray i has found.

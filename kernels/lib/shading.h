@@ -13,6 +13,7 @@ typedef struct {
     float3 to_eye;      // unit
     float3 throughput;  // at the hit, absorption included
     float3 diffuse;     // k_d
+    float3 weight;      // of the diffuse and specular terms
     float local_share;  // share of local illumination in the blend
 } Shading;
 
@@ -26,7 +27,13 @@ static inline Shading shading_at(const World* world, global const Ray* ray, Hit 
     s.throughput = absorbed(s.material, &s.surface, load3(ray->throughput), hit.t);
     s.diffuse = diffuse_color(world, s.material, &s.surface);
     s.local_share = fmax(1.0f - s.material->reflection - s.material->transmission, 0.0f);
+    s.weight = s.throughput * s.local_share;
     return s;
+}
+
+/// Whether any light could add anything: a perfect mirror's own colour is not seen.
+static inline bool answers_light(const Shading* s) {
+    return any(s->weight * (s->diffuse + load3(s->material->specular)) != 0.0f);
 }
 
 /// The ambient term, weighted by the blend and by the ray.
@@ -111,8 +118,7 @@ static inline uint shade_light_sample(const World* world, const Shading* s, glob
     const bool gouraud = (s->material->flags & MATERIAL_GOURAUD) && s->surface.triangle != NO_INDEX;
     const Answer answer =
         gouraud ? gouraud_answer(world, s, light, sample, light_position) : phong_answer(s, sample);
-    const float3 weight = s->throughput * s->local_share;
-    const float3 diffuse = weight * answer.diffuse, specular = weight * answer.specular;
+    const float3 diffuse = s->weight * answer.diffuse, specular = s->weight * answer.specular;
     if (!any(diffuse != 0.0f) && !any(specular != 0.0f)) return 0;
 
     aim_shadow_ray(world, s, light, sample, light_position, out);

@@ -17,10 +17,15 @@ typedef struct {
 
 static inline float component(float3 v, uint axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
-static inline TriangleFrame triangle_frame(float3 origin, float3 direction) {
+/// The axis along which a direction is longest.
+static inline uint largest_axis(float3 direction) {
     const float3 a = fabs(direction);
+    return a.x > a.y ? (a.x > a.z ? 0u : 2u) : (a.y > a.z ? 1u : 2u);
+}
+
+static inline TriangleFrame triangle_frame(float3 origin, float3 direction) {
     TriangleFrame f;
-    f.z = a.x > a.y ? (a.x > a.z ? 0u : 2u) : (a.y > a.z ? 1u : 2u);
+    f.z = largest_axis(direction);
     f.x = f.z == 2 ? 0u : f.z + 1;
     f.y = f.x == 2 ? 0u : f.x + 1;
     if (component(direction, f.z) < 0.0f) {
