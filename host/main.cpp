@@ -42,6 +42,8 @@ int run(int argc, char** argv) {
     } catch (const CLI::Success& success) {
         return app.exit(success);
     } catch (const CLI::ParseError& error) {
+        const bool unknown_command = app.get_subcommands().empty() && argc > 1 && argv[1][0] != '-';
+        if (unknown_command) throw UsageError(fmt::format("there is no command \"{}\"; see raymill --help", argv[1]));
         throw UsageError(fmt::format("{}; see raymill --help", error.what()));
     }
     for (const auto& [name, command] : commands)

@@ -94,7 +94,8 @@ std::vector<std::string> parse_aovs(const std::string& list) {
         if (name != "all" && !find_aov(name)) {
             std::vector<std::string> known;
             for (const Aov& aov : known_aovs()) known.push_back(aov.name);
-            throw UsageError(fmt::format("--aov {}: known are {} and all", name, fmt::join(known, ", ")));
+            throw UsageError(
+                fmt::format("--aov: there is no layer \"{}\"; known are {} and all", name, fmt::join(known, ", ")));
         }
         for (const Aov& aov : known_aovs())
             if ((name == "all" || name == aov.name) && std::ranges::find(names, aov.name) == names.end())

@@ -10,7 +10,6 @@ namespace raymill {
 
 namespace {
 
-constexpr int largest_side = 65536;
 
 /// The whole text as a number, or nothing.
 template <class Number>

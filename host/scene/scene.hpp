@@ -29,6 +29,8 @@ struct Crop {
     double x0 = 0, x1 = 1, y0 = 0, y1 = 1;
 };
 
+inline constexpr int largest_side = 32768;  // of an image, in pixels
+
 struct RenderSettings {
     int width = 640;
     int height = 480;

@@ -46,7 +46,6 @@ void read_sections(TableReader& root, const toml::table& tables, std::string_vie
 }  // namespace
 
 void read_render(TableReader& reader, RenderSettings& settings) {
-    constexpr double largest_side = 32768;
     double size[2] = {double(settings.width), double(settings.height)};
     if (reader.numbers("size", size, between(1, largest_side))) {
         if (size[0] != std::floor(size[0]) || size[1] != std::floor(size[1]))

@@ -114,8 +114,8 @@ class Writer {
         const SceneLight& light = truth_.scene.lights[slot.light];
         const LightTerms terms = light_terms(truth_, context, node.ray, slot);
         const std::string which =
-            light.samples > 1 ? fmt::format(", its sample {} of {}", slot.sample, light.samples) : "";
-        line(level, "light {}, {}{}: distance {}, attenuation {}, n.l {}, {} {}", slot.light, light_type(light), which,
+            light.samples > 1 ? fmt::format(", its sample {} of {}", slot.sample + 1, light.samples) : "";
+        line(level, "light {}, {}{}: distance {}, attenuation {}, n.l {}, {} {}", slot.light + 1, light_type(light), which,
              text(terms.sample.distance), text(terms.attenuation), text(terms.n_dot_l), highlight_name(context),
              text(terms.highlight));
         if (!item) {

@@ -29,7 +29,7 @@ class LineWriter {
     void write_shadow_ray(const RayNode& node, const ShadowItem& item) {
         const Passage passage = passage_of(truth_, item.ray);
         const double length = passage.blocker ? passage.blocker->t : std::min(double{item.ray.t_max}, escape_);
-        segment(fmt::format("sample {}, shadow ray to light {}, {}", node.ray.sample, item.ray.light,
+        segment(fmt::format("sample {}, shadow ray to light {}, {}", node.ray.sample, item.ray.light + 1,
                             passage.blocker ? "blocked by " + object_name(truth_.scene, passage.blocker->primitive)
                                             : "visible"),
                 reference_ray(item.ray), length);

@@ -46,15 +46,16 @@ dvec3 shadow_filter(const Scene& scene, std::uint32_t primitive) {
 
 std::string object_name(const Scene& scene, std::uint32_t primitive) {
     const std::uint32_t index = object_index(scene, primitive);
-    if (index >= scene.objects.size()) return fmt::format("object {}", index);
+    if (index >= scene.objects.size()) return fmt::format("object {}", index + 1);
     const SceneObject& object = scene.objects[index];
-    return object.name.empty() || object.name == object.shape ? fmt::format("{} (object {})", object.shape, index)
+    return object.name.empty() || object.name == object.shape ? fmt::format("{} (object {})", object.shape, index + 1)
                                                               : fmt::format("{} \"{}\"", object.shape, object.name);
 }
 
 std::string material_name(const Scene& scene, std::uint32_t material) {
     const std::string& name = scene.materials[material].name;
-    return name.empty() ? fmt::format("material {}", material) : fmt::format("material \"{}\"", name);
+    if (name.empty()) return material == 0 ? "the default material" : fmt::format("material {}", material);
+    return fmt::format("material \"{}\"", name);
 }
 
 const char* light_type(const SceneLight& light) {

@@ -1,5 +1,6 @@
 #include "exr_pixels.hpp"
 
+#include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfInputFile.h>
 
@@ -21,6 +22,24 @@ Picture read_picture(const std::string& file) {
     input.setFrameBuffer(frame_buffer);
     input.readPixels(window.min.y, window.max.y);
     return picture;
+}
+
+std::map<std::string, Channel> read_channels(const std::string& file) {
+    Imf::InputFile input(file.c_str());
+    const Imath::Box2i window = input.header().dataWindow();
+    const Imath::V2i size = window.size() + Imath::V2i(1);
+    std::map<std::string, Channel> channels;
+    Imf::FrameBuffer frame_buffer;
+    const Imf::ChannelList& list = input.header().channels();
+    for (auto entry = list.begin(); entry != list.end(); ++entry) {
+        Channel& channel = channels[entry.name()];
+        channel.type = entry.channel().type;
+        channel.values.resize(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
+        frame_buffer.insert(entry.name(), Imf::Slice::Make(Imf::FLOAT, channel.values.data(), window));
+    }
+    input.setFrameBuffer(frame_buffer);
+    input.readPixels(window.min.y, window.max.y);
+    return channels;
 }
 
 bool same_pixels(const Picture& a, const Picture& b) {

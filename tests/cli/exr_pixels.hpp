@@ -2,7 +2,9 @@
 #pragma once
 
 #include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfPixelType.h>
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -22,6 +24,15 @@ struct Picture {
 
 /// Throws what OpenEXR throws if the file is missing, damaged, or not complete.
 Picture read_picture(const std::string& file);
+
+/// A channel of any name, row by row from the top of the data window.
+struct Channel {
+    Imf::PixelType type = Imf::NUM_PIXELTYPES;  // in the file
+    std::vector<float> values;
+};
+
+/// All channels by name. Throws what OpenEXR throws.
+std::map<std::string, Channel> read_channels(const std::string& file);
 
 /// Whether both have the same windows and the same bits in every pixel.
 bool same_pixels(const Picture& a, const Picture& b);

@@ -16,14 +16,14 @@ void expect_help(const std::vector<std::string>& arguments, const std::vector<st
 
 TEST(help, of_the_program_names_every_command) {
     for (const char* flag : {"--help", "-h"})
-        expect_help({flag}, {"render", "check", "devices", "scene", "--version", "raymill COMMAND --help"});
+        expect_help({flag}, {"render", "check", "devices", "explain", "verify", "scene", "--version", "raymill COMMAND --help"});
 }
 
 TEST(help, of_render_names_its_flags_and_statuses) {
     expect_help({"render", "--help"},
                 {"SCENE",        "--output",     "--size",       "WxH",         "--spp",
                  "--depth",      "--integrator", "--crop",       "x0,x1,y0,y1", "--seed",
-                 "--exposure",   "--half",       "--device",     "--threads",   "--queue-capacity",
+                 "--exposure",   "--half",       "--aov",        "--device",     "--threads",   "--queue-capacity",
                  "--work-group", "--mem-limit",  "--kernel-dir", "--stats",     "--quiet",
                  "130",          "Examples:"});
 }
@@ -31,6 +31,8 @@ TEST(help, of_render_names_its_flags_and_statuses) {
 TEST(help, of_the_other_commands_names_what_they_take) {
     expect_help({"check", "--help"}, {"SCENE", "--mem-limit", "--size", "Example:"});
     expect_help({"devices", "--help"}, {"OpenCL"});
+    expect_help({"explain", "--help"}, {"SCENE", "--pixel", "--sample", "--obj", "Exit status:", "Examples:"});
+    expect_help({"verify", "--help"}, {"SCENE", "--size", "Columns:", "Exit status:", "Examples:"});
     expect_help({"scene", "--help"}, {"MODEL", "Example:"});
 }
 
@@ -43,7 +45,7 @@ TEST(version, is_one_line_on_standard_output) {
 
 TEST(arguments, that_are_missing_or_unknown_are_status_2_and_lead_to_help) {
     expect_failure(run_raymill({}), 2, "raymill --help");
-    expect_failure(run_raymill({"paint"}), 2, "raymill --help");
+    expect_failure(run_raymill({"paint"}), 2, "no command \"paint\"; see raymill --help");
     expect_failure(run_raymill({"render"}), 2, "SCENE");
     expect_failure(run_raymill({"render", "a.toml", "--fast"}), 2, "--fast");
     expect_failure(run_raymill({"render", "a.toml", "b.toml"}), 2, "b.toml");

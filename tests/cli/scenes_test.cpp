@@ -44,6 +44,12 @@ TEST(Scenes, those_of_the_lecture_load_without_error_or_warning) {
     for (const auto& scene : scenes) expect_loads_without_a_word(scene);
 }
 
+TEST(Scenes, those_of_the_gallery_load_without_error_or_warning) {
+    const auto scenes = scenes_in(root / "scenes");
+    EXPECT_GE(scenes.size(), 5u);
+    for (const auto& scene : scenes) expect_loads_without_a_word(scene);
+}
+
 TEST(Scenes, the_page_of_the_lecture_shows_each_of_its_scenes) {
     const std::string page = text_of(root / "docs/lecture.md");
     for (const auto& scene : scenes_in(root / "scenes/lecture"))

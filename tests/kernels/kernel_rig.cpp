@@ -78,15 +78,20 @@ Buffer<T> filled(std::span<const T> items) {
     return Buffer<T>(device(), items);
 }
 
+/// A film of this many pixels and one more as a guard.
+Film cleared_film(std::size_t pixels) {
+    Film film{{device(), (pixels + 1) * FILM_CHANNELS}, {device(), 1}};
+    film.sums.clear(device());
+    film.counters.clear(device());
+    return film;
+}
+
 /// A cleared film for every pixel that the items name.
 template <class Item>
 Film film_for(std::span<const Item> items) {
     std::size_t pixels = 1;
     for (const Item& item : items) pixels = std::max<std::size_t>(pixels, item.pixel + 1);
-    Film film{{device(), (pixels + 1) * FILM_CHANNELS}, {device(), 1}};
-    film.sums.clear(device());
-    film.counters.clear(device());
-    return film;
+    return cleared_film(pixels);
 }
 
 FilmState read(const Film& film) {
@@ -98,6 +103,7 @@ FilmState read(const Film& film) {
 
 struct KernelRig::Parts {
     DeviceScene scene;
+    std::size_t film_pixels = 0;  // of all planes
 };
 
 KernelRig::KernelRig(const Scene& scene)
@@ -105,6 +111,13 @@ KernelRig::KernelRig(const Scene& scene)
 
 KernelRig::KernelRig(const Scene& scene, const Bvh& bvh)
     : parts_(std::make_unique<Parts>(Parts{DeviceScene(device(), scene, bvh)})) {}
+
+KernelRig::KernelRig(const Scene& scene, const FilmPlanes& planes) {
+    const Bvh bvh = build_bvh(scene.vertices, scene.triangles, scene.spheres);
+    const PixelWindow window = crop_window(scene.settings);
+    const auto pixels = static_cast<std::size_t>(window.width) * static_cast<std::size_t>(window.height);
+    parts_ = std::make_unique<Parts>(Parts{DeviceScene(device(), scene, bvh, planes), pixels * planes.count()});
+}
 
 KernelRig::~KernelRig() = default;
 
@@ -133,6 +146,14 @@ ShadeResult KernelRig::shade(std::span<const Ray> rays, std::span<const Hit> hit
     stages().shade(parts_->scene, {queue, first, static_cast<uint>(hits.size())}, hit_queue, {first_slot, slot_count},
                    shadow, film);
     return {shadow.rays.read(device()), shadow.counts.read(device()), read(film)};
+}
+
+FilmState KernelRig::features(std::span<const Ray> rays, std::span<const Hit> hits, uint depth, uint first) const {
+    const Buffer<Ray> queue = filled(rays);
+    const Buffer<Hit> hit_queue = filled(hits);
+    Film film = cleared_film(parts_->film_pixels);
+    stages().features(parts_->scene, {queue, first, static_cast<uint>(hits.size())}, depth, hit_queue, film);
+    return read(film);
 }
 
 FilmState KernelRig::shadow(std::span<const ShadowRay> rays, std::span<const uint> counts) const {

@@ -10,6 +10,7 @@
 
 #include "bvh/bvh.hpp"
 #include "scene/scene.hpp"
+#include "wavefront/film_planes.hpp"
 
 namespace raymill::test {
 
@@ -70,6 +71,8 @@ class KernelRig {
   public:
     explicit KernelRig(const Scene& scene);
     KernelRig(const Scene& scene, const Bvh& bvh);
+    /// With planes beside the beauty, which `features` adds to.
+    KernelRig(const Scene& scene, const FilmPlanes& planes);
     ~KernelRig();
 
     std::vector<Ray> generate(std::uint64_t first_sample, uint count) const;
@@ -78,6 +81,8 @@ class KernelRig {
     /// hits[i] belongs to rays[first + i].
     ShadeResult shade(std::span<const Ray> rays, std::span<const Hit> hits, uint first_slot, uint slot_count,
                       uint first = 0) const;
+    /// hits[i] belongs to rays[first + i]. The film has all kept planes, each of the scene's whole image.
+    FilmState features(std::span<const Ray> rays, std::span<const Hit> hits, uint depth, uint first = 0) const;
     /// rays: CHUNK for each of the counts.
     FilmState shadow(std::span<const ShadowRay> rays, std::span<const uint> counts) const;
     SecondaryResult secondary(std::span<const Ray> rays, std::span<const Hit> hits, uint capacity,
