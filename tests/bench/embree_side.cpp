@@ -88,6 +88,7 @@ EmbreeSide::EmbreeSide(const Scene& scene, unsigned threads, bool robust)
     if (!device_) throw std::runtime_error("Embree: no device");
     rtcSetDeviceErrorFunction(device_.get(), fail, nullptr);
     rtcSetDeviceMemoryMonitorFunction(device_.get(), count_bytes, &bytes_);
+    for (const Sphere& s : scene.spheres) spheres_.emplace_back(s.center[0], s.center[1], s.center[2], s.radius);
 }
 
 void EmbreeSide::attach_triangles(RTCScene scene) const {
@@ -104,9 +105,8 @@ void EmbreeSide::attach_triangles(RTCScene scene) const {
 void EmbreeSide::attach_spheres(RTCScene scene) const {
     if (scene_.spheres.empty()) return;
     const Geometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_SPHERE_POINT));
-    // The centre and, behind it, the radius.
-    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, scene_.spheres.data(), 0,
-                               sizeof(Sphere), scene_.spheres.size());
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, spheres_.data(), 0,
+                               sizeof(glm::vec4), spheres_.size());
     rtcCommitGeometry(geometry.get());
     rtcAttachGeometryByID(scene, geometry.get(), spheres_id);
 }

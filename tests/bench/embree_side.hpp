@@ -13,7 +13,7 @@
 
 namespace raymill::bench {
 
-/// Shares the scene's arrays: it must outlive this.
+/// Shares the scene's arrays of triangles: it must outlive this.
 class EmbreeSide {
   public:
     /// threads: of its builder; 0 for all. robust: its watertight mode, which ours always is.
@@ -42,6 +42,7 @@ class EmbreeSide {
     void attach_spheres(RTCScene scene) const;
 
     const Scene& scene_;
+    std::vector<glm::vec4> spheres_;  // Embree loads sixteen aligned bytes a sphere: ours do not do
     bool robust_;
     std::atomic<std::ptrdiff_t> bytes_ = 0;  // that Embree holds; before the device, which reports to it
     std::unique_ptr<RTCDeviceTy, ReleaseDevice> device_;

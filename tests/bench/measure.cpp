@@ -25,18 +25,26 @@ double share_differing(const std::vector<std::uint32_t>& a, const std::vector<st
     return a.empty() ? 0 : static_cast<double>(differing) / static_cast<double>(a.size());
 }
 
-/// Traces with every variant once, which also compiles kernels and wakes threads, and compares with rtcIntersect1.
-std::vector<double> differences(const std::vector<Variant>& variants) {
+/// What the variants find, and by how much.
+struct Comparison {
+    std::vector<double> differing;  // by variant: share of rays that it does not agree on with rtcIntersect1
+    double hitting = 0;
+};
+
+/// Traces with every variant once, which also compiles kernels and wakes threads.
+Comparison compare(const std::vector<Variant>& variants, bool any_hit) {
     std::vector<std::vector<std::uint32_t>> found;
     for (const Variant& variant : variants) {
         variant.trace();
         found.push_back(variant.found());
     }
-    const auto reference = std::find_if(variants.begin(), variants.end(), [](const Variant& v) { return !v.ours; });
-    std::vector<double> shares;
-    for (const auto& ids : found)
-        shares.push_back(share_differing(ids, found[static_cast<std::size_t>(reference - variants.begin())]));
-    return shares;
+    const auto single = std::find_if(variants.begin(), variants.end(), [](const Variant& v) { return !v.ours; });
+    const std::vector<std::uint32_t>& reference = found[static_cast<std::size_t>(single - variants.begin())];
+    Comparison comparison;
+    for (const auto& ids : found) comparison.differing.push_back(share_differing(ids, reference));
+    const auto missing = std::count(reference.begin(), reference.end(), any_hit ? 0u : NO_INDEX);
+    comparison.hitting = 1 - static_cast<double>(missing) / static_cast<double>(reference.size());
+    return comparison;
 }
 
 /// Seconds by variant and round.
@@ -57,11 +65,12 @@ std::size_t best_of_embree(const std::vector<Variant>& variants, const std::vect
 }
 
 SetResult measure_set(const RaySet& set, RaymillSide& ours, const EmbreeSide& embree, int rounds) {
-    SetResult result{set.name, set.description, set.rays.size(), {}, {}};
+    SetResult result{set.name, set.description, set.any_hit, set.rays.size(), 0, {}, {}};
     if (set.rays.empty()) return result;
     std::vector<Variant> variants = ours.variants(set);
     for (Variant& variant : embree.variants(set)) variants.push_back(std::move(variant));
-    const std::vector<double> differing = differences(variants);
+    const Comparison comparison = compare(variants, set.any_hit);
+    result.hitting = comparison.hitting;
     const std::vector<std::vector<double>> seconds = time_rounds(variants, rounds);
     const std::size_t best = best_of_embree(variants, seconds);
     result.best = variants[best].name;
@@ -72,7 +81,7 @@ SetResult measure_set(const RaySet& set, RaymillSide& ours, const EmbreeSide& em
             ratios.push_back(seconds[best][round] / seconds[i][round]);
         }
         result.variants.push_back(
-            {variants[i].name, variants[i].ours, quartiles(mrays), quartiles(ratios), differing[i]});
+            {variants[i].name, variants[i].ours, quartiles(mrays), quartiles(ratios), comparison.differing[i]});
     }
     return result;
 }

@@ -25,8 +25,10 @@ struct VariantResult {
 struct SetResult {
     std::string name;
     std::string description;
+    bool any_hit = false;
     std::size_t rays = 0;
-    std::string best;  // Embree's variant of the highest median
+    double hitting = 0;  // share of rays that hit something, or are blocked
+    std::string best;    // Embree's variant of the highest median
     std::vector<VariantResult> variants;
 };
 

@@ -31,11 +31,8 @@ Json json_of(const SetResult& set) {
                             {"mrays_per_second", json_of(v.mrays)},
                             {"ratio_to_best_embree", json_of(v.ratio)},
                             {"differing", v.differing}});
-    return {{"set", set.name},
-            {"description", set.description},
-            {"rays", set.rays},
-            {"best_embree", set.best},
-            {"variants", variants}};
+    return {{"set", set.name},        {"description", set.description}, {"rays", set.rays},
+            {"hitting", set.hitting}, {"best_embree", set.best},        {"variants", variants}};
 }
 
 Json json_of(const SceneResult& scene) {
@@ -72,14 +69,15 @@ void print_scene(const SceneResult& scene) {
                scene.statistics.depth, scene.statistics.surface_area_cost);
     print_build("raymill", scene.ours);
     print_build("embree", scene.embree);
-    fmt::print("  {:<2} {:>8}  {:<21} {:>7}  {:<17} {:>6}  {:<13}  {}\n", "", "rays", "variant", "Mrays/s", "", "ratio",
-               "", "differing");
-    for (const SetResult& set : scene.sets)
+    for (const SetResult& set : scene.sets) {
+        fmt::print("  {}: {} {}, {:.1f} % {}\n", set.name, set.rays, set.description, 100 * set.hitting,
+                   set.any_hit ? "blocked" : "hit");
         for (const VariantResult& v : set.variants)
-            fmt::print("  {:<2} {:>8}  {:<21} {:7.2f}  {:<17} {:6.2f}  {:<13}  {:.1e}{}\n", set.name, set.rays, v.name,
+            fmt::print("    {:<21} {:7.2f} Mrays/s {:<17}  ratio {:5.2f} {:<13}  differing {:.1e}{}\n", v.name,
                        v.mrays.median, fmt::format("[{:.2f} {:.2f}]", v.mrays.lower, v.mrays.upper), v.ratio.median,
                        fmt::format("[{:.2f} {:.2f}]", v.ratio.lower, v.ratio.upper), v.differing,
                        v.name == set.best ? "  <- Embree's best" : "");
+    }
 }
 
 void print_summary(const std::vector<SceneResult>& scenes) {

@@ -92,7 +92,7 @@ BenchScene scattered(double triangles) {
     return made;
 }
 
-/// Blades a hundred and more times as long as wide, in all directions: what boxes hold badly.
+/// Blades 50 to 125 times as long as wide, in all directions: what boxes hold badly.
 BenchScene thin(double triangles) {
     BenchScene made = start("thin", {0, 2, 7}, {0, 0, 0}, 36, {{3, 6, 4}, 0.8f, {0, -1, 0}});
     const auto blades = static_cast<int>(triangles);
