@@ -175,6 +175,10 @@ BenchScene load_bench_scene(const std::string& file) {
             loaded.lamp.position = point->position;
             break;
         }
+    // Embree has neither filters nor skies.
+    scene.settings.shadows = ShadowMode::opaque;
+    scene.settings.background = glm::dvec3(0);
+    scene.lights.clear();
     loaded.lamp.edge = 0.05f * size;
     const glm::vec3 axis = center - loaded.lamp.position;
     if (glm::length(axis) > 0) loaded.lamp.axis = glm::normalize(axis);
