@@ -1,0 +1,65 @@
+// Runs both sides in turn and compares what they find.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "embree_side.hpp"
+#include "raymill_side.hpp"
+#include "statistics.hpp"
+
+namespace raymill::bench {
+
+/// More rays than this share may not find another primitive, or another visibility: rays through edges that two
+/// triangles share belong to either, everything else is an error.
+inline constexpr double ALLOWED_DIFFERENCE = 1e-3;
+
+struct VariantResult {
+    std::string name;
+    bool ours = false;
+    Quartiles mrays;       // millions of rays a second
+    Quartiles ratio;       // to Embree's best variant, round by round
+    double differing = 0;  // share of rays whose result is not that of Embree's calls of one ray
+};
+
+struct SetResult {
+    std::string name;
+    std::string description;
+    bool any_hit = false;
+    std::size_t rays = 0;
+    double hitting = 0;  // share of rays that hit something, or are blocked
+    std::string best;    // Embree's variant of the highest median
+    std::vector<VariantResult> variants;
+};
+
+struct BuildResult {
+    Quartiles mprimitives;  // millions of triangles and spheres a second
+    double bytes_a_primitive = 0;
+};
+
+struct SceneResult {
+    std::string name;
+    std::size_t triangles = 0;
+    std::size_t spheres = 0;
+    BuildResult ours, embree;
+    BvhStatistics statistics;
+    std::vector<SetResult> sets;
+
+    /// The largest share of differing results among all variants.
+    double worst_difference() const;
+};
+
+struct MeasureOptions {
+    int width = 1024;  // of the camera's image, multiples of TILE
+    int height = 768;
+    int rounds = 11;
+    int builds = 3;
+    unsigned threads = 0;  // 0: all
+    bool robust = false;   // Embree's watertight mode
+};
+
+/// Builds both hierarchies `builds` times in turn, then measures each set of rays: one trace of every variant to
+/// compare the results, and `rounds` rounds in which each variant runs once, by the wall clock.
+SceneResult measure(const BenchScene& bench, const RaymillKernels& kernels, const MeasureOptions& options);
+
+}  // namespace raymill::bench

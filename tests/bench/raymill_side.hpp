@@ -1,0 +1,64 @@
+// Our side: the hierarchy and the stages `intersect` and `shadow`, as the renderer runs them.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "bvh/bvh.hpp"
+#include "ray_sets.hpp"
+#include "variant.hpp"
+#include "wavefront/stages.hpp"
+
+namespace raymill::bench {
+
+/// Builds the hierarchy and keeps the last one built.
+class RaymillHierarchy {
+  public:
+    RaymillHierarchy(const Scene& scene, unsigned threads) : scene_(scene), threads_(threads) {}
+    Build build();
+    const Bvh& bvh() const { return bvh_; }
+
+  private:
+    const Scene& scene_;
+    unsigned threads_;
+    Bvh bvh_;
+};
+
+/// The kernels, built once a traversal, for any number of scenes.
+class RaymillKernels {
+  public:
+    /// device, threads: see open_device. Throws DeviceError.
+    RaymillKernels(const std::string& device, unsigned threads, const std::vector<Traversal>& traversals);
+
+    struct Kind {
+        std::string name;
+        std::unique_ptr<Stages> stages;
+    };
+    const Device& device() const { return device_; }
+    const std::vector<Kind>& kinds() const { return kinds_; }
+
+  private:
+    Device device_;
+    std::vector<Kind> kinds_;
+};
+
+/// A scene on the device.
+class RaymillSide {
+  public:
+    RaymillSide(const RaymillKernels& kernels, const Scene& scene, const Bvh& bvh)
+        : kernels_(kernels), scene_(kernels.device(), scene, bvh) {}
+
+    /// One variant a traversal, all in one queue and launch. The film takes part where it is the result: an unblocked
+    /// shadow ray adds 1 to one channel of its own pixel, by an atomic integer addition. Closest hits leave it alone:
+    /// the rays count as secondary ones, and the background is black. Must not outlive this.
+    std::vector<Variant> variants(const RaySet& set);
+
+  private:
+    std::vector<Variant> closest_variants(const RaySet& set);
+    std::vector<Variant> shadow_variants(const RaySet& set);
+
+    const RaymillKernels& kernels_;
+    DeviceScene scene_;
+};
+
+}  // namespace raymill::bench

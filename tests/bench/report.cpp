@@ -1,0 +1,113 @@
+#include "report.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "common/error.hpp"
+
+namespace raymill::bench {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const Quartiles& q) {
+    return {{"median", q.median}, {"lower_quartile", q.lower}, {"upper_quartile", q.upper}};
+}
+
+Json json_of(const BuildResult& build) {
+    return {{"mprimitives_per_second", json_of(build.mprimitives)}, {"bytes_per_primitive", build.bytes_a_primitive}};
+}
+
+Json json_of(const SetResult& set) {
+    Json variants = Json::array();
+    for (const VariantResult& v : set.variants)
+        variants.push_back({{"name", v.name},
+                            {"ours", v.ours},
+                            {"mrays_per_second", json_of(v.mrays)},
+                            {"ratio_to_best_embree", json_of(v.ratio)},
+                            {"differing", v.differing}});
+    return {{"set", set.name},        {"description", set.description}, {"rays", set.rays},
+            {"hitting", set.hitting}, {"best_embree", set.best},        {"variants", variants}};
+}
+
+Json json_of(const SceneResult& scene) {
+    Json sets = Json::array();
+    for (const SetResult& set : scene.sets) sets.push_back(json_of(set));
+    return {{"scene", scene.name},
+            {"triangles", scene.triangles},
+            {"spheres", scene.spheres},
+            {"build", {{"raymill", json_of(scene.ours)}, {"embree", json_of(scene.embree)}}},
+            {"depth", scene.statistics.depth},
+            {"surface_area_cost", scene.statistics.surface_area_cost},
+            {"sets", sets}};
+}
+
+void print_build(const char* name, const BuildResult& build) {
+    fmt::print("  build {:<8} {:7.2f} M/s [{:.2f} {:.2f}]  {:6.1f} bytes a primitive\n", name, build.mprimitives.median,
+               build.mprimitives.lower, build.mprimitives.upper, build.bytes_a_primitive);
+}
+
+}  // namespace
+
+void print_heading(const Circumstances& c) {
+    fmt::print("{} ({}), {} compute units; Embree {}{}\n", c.device, c.driver, c.compute_units, c.embree,
+               c.options.robust ? ", robust" : "");
+    fmt::print(
+        "P camera, S to a point light, A to an area light, R mirrored, D diffuse rays. {} rounds: median "
+        "[quartiles].\nTimes include reading rays and writing hits; ours of S and A the film, to which each "
+        "unblocked ray adds one channel.\n",
+        c.options.rounds);
+}
+
+void print_scene(const SceneResult& scene) {
+    fmt::print("\n{}: {} triangles, {} spheres; depth {}, cost {:.1f}\n", scene.name, scene.triangles, scene.spheres,
+               scene.statistics.depth, scene.statistics.surface_area_cost);
+    print_build("raymill", scene.ours);
+    print_build("embree", scene.embree);
+    for (const SetResult& set : scene.sets) {
+        fmt::print("  {}: {} {}, {:.1f} % {}\n", set.name, set.rays, set.description, 100 * set.hitting,
+                   set.any_hit ? "blocked" : "hit");
+        for (const VariantResult& v : set.variants)
+            fmt::print("    {:<21} {:7.2f} Mrays/s {:<17}  ratio {:5.2f} {:<13}  differing {:.1e}{}\n", v.name,
+                       v.mrays.median, fmt::format("[{:.2f} {:.2f}]", v.mrays.lower, v.mrays.upper), v.ratio.median,
+                       fmt::format("[{:.2f} {:.2f}]", v.ratio.lower, v.ratio.upper), v.differing,
+                       v.name == set.best ? "  <- Embree's best" : "");
+    }
+}
+
+void print_summary(const std::vector<SceneResult>& scenes) {
+    fmt::print("\nratio to Embree's best\n");
+    for (const SceneResult& scene : scenes)
+        for (const SetResult& set : scene.sets) {
+            std::string line = fmt::format("  {:<12} {}", scene.name, set.name);
+            for (const VariantResult& v : set.variants)
+                if (v.ours) line += fmt::format("  {} {:5.2f}", v.name, v.ratio.median);
+            fmt::print("{}\n", line);
+        }
+}
+
+void write_json(const std::string& file, const Circumstances& c, const std::vector<SceneResult>& scenes) {
+    Json all = {{"device", c.device},
+                {"driver", c.driver},
+                {"compute_units", c.compute_units},
+                {"embree", c.embree},
+                {"embree_robust", c.options.robust},
+                {"width", c.options.width},
+                {"height", c.options.height},
+                {"rounds", c.options.rounds},
+                {"builds", c.options.builds},
+                {"threads", c.options.threads},
+                {"scenes", Json::array()}};
+    for (const SceneResult& scene : scenes) all["scenes"].push_back(json_of(scene));
+    std::ofstream out(file);
+    out << all.dump(2) << '\n';
+    out.close();
+    if (!out) throw OutputError(fmt::format("cannot write {}: {}", file, std::strerror(errno)));
+}
+
+}  // namespace raymill::bench

@@ -1,0 +1,30 @@
+// What was measured, as a table and as JSON.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "measure.hpp"
+
+namespace raymill::bench {
+
+/// Where and how it was measured.
+struct Circumstances {
+    std::string device;
+    std::string driver;
+    unsigned compute_units = 0;
+    std::string embree;  // version
+    MeasureOptions options;
+};
+
+/// To standard output.
+void print_heading(const Circumstances& circumstances);
+void print_scene(const SceneResult& scene);
+
+/// One line a set: each of our variants' ratio to Embree's best, over all scenes.
+void print_summary(const std::vector<SceneResult>& scenes);
+
+/// Throws OutputError if the file cannot be written.
+void write_json(const std::string& file, const Circumstances& circumstances, const std::vector<SceneResult>& scenes);
+
+}  // namespace raymill::bench

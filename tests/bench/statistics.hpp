@@ -1,0 +1,18 @@
+// Medians and quartiles of a few measurements.
+#pragma once
+
+#include <vector>
+
+namespace raymill::bench {
+
+struct Quartiles {
+    double lower = 0;
+    double median = 0;
+    double upper = 0;
+};
+
+/// Quartiles with linear interpolation between the order statistics (type 7 of Hyndman and Fan, 1996).
+/// values: at least one, in any order.
+Quartiles quartiles(std::vector<double> values);
+
+}  // namespace raymill::bench
