@@ -133,6 +133,7 @@ TEST_F(Output, may_have_spaces_and_umlauts_in_its_path) {
 }
 
 TEST_F(Output, of_an_interrupted_render_is_a_whole_file_and_status_130) {
+    if (!terminals_can_be_opened()) GTEST_SKIP() << "no pseudo-terminal can be opened here: is /dev/pts mounted?";
     const std::string file = folder_.file("picture.exr");
     // Pressed once, when the progress bar is there, that is, while the program renders.
     bool pressed = false;
@@ -154,6 +155,7 @@ TEST_F(Output, of_an_interrupted_render_is_a_whole_file_and_status_130) {
 }
 
 TEST_F(Output, on_a_terminal_has_a_progress_bar_that_is_wiped) {
+    if (!terminals_can_be_opened()) GTEST_SKIP() << "no pseudo-terminal can be opened here: is /dev/pts mounted?";
     const Outcome outcome = run_raymill(
         {"render", scene_, "-o", folder_.file("picture.exr"), "--size", "400x300", "--queue-capacity", "64"},
         {.watch_terminal = [](int, const std::string&) {}});

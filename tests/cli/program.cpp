@@ -76,6 +76,14 @@ int wait_for(int pid) {
 
 }  // namespace
 
+bool terminals_can_be_opened() {
+    int ours = -1, theirs = -1;
+    if (::openpty(&ours, &theirs, nullptr, nullptr, nullptr) != 0) return false;
+    ::close(ours);
+    ::close(theirs);
+    return true;
+}
+
 Outcome run_raymill(const std::vector<std::string>& arguments, const Surroundings& surroundings) {
     const TemporaryFolder folder;
     const std::string out = folder.file("out"), err = folder.file("err");

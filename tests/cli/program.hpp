@@ -22,6 +22,9 @@ struct Surroundings {
     std::function<void(int pid, const std::string& terminal)> watch_terminal{};
 };
 
+/// Whether Surroundings::watch_terminal works here: bare roots and some containers have no /dev/pts.
+bool terminals_can_be_opened();
+
 /// Runs `raymill` with these arguments and waits for its end.
 Outcome run_raymill(const std::vector<std::string>& arguments, const Surroundings& surroundings = {});
 
