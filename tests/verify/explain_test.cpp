@@ -87,6 +87,15 @@ TEST(Explain, a_pixel_of_the_background_ends_at_once) {
     EXPECT_EQ(count_of(text, "hits nothing; the background adds (0.1, 0.2, 0.4)"), 2u);
 }
 
+TEST(Explain, lights_are_counted_from_1_as_the_scene_file_s_errors_do) {
+    const Scene scene = branching_scene();  // the first of its five lights is ambient, the last directional
+    const std::string text = text_of(scene, tree_of(scene, pixels[4]));
+    EXPECT_EQ(count_of(text, "light 0,"), 0u);
+    EXPECT_EQ(count_of(text, "light 1,"), 0u);
+    EXPECT_GE(count_of(text, "light 2, point"), 1u);
+    EXPECT_GE(count_of(text, "light 5, directional"), 1u);
+}
+
 TEST(Explain, lines_fit_a_terminal) {
     const Scene scene = branching_scene();
     for (const Pixel& pixel : pixels) {
