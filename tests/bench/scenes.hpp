@@ -33,8 +33,9 @@ struct Recipe {
 
 const std::vector<Recipe>& recipes();
 
-/// A scene of the program's own formats, or a bare model, which is framed. Infinite planes, which Embree does not have,
-/// are left out. The lamp stands at the first point light, else above the eye's side of the bounds. Throws SceneError.
+/// A scene of the program's own formats, or a bare model, which is framed. What Embree does not have is left out:
+/// infinite planes, skies, and shadows that surfaces filter. The lamp stands at the first point light, else above the
+/// way from the eye to the middle of the bounds. Throws SceneError.
 BenchScene load_bench_scene(const std::string& file);
 
 }  // namespace raymill::bench
