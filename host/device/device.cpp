@@ -29,8 +29,9 @@ std::string why_unusable(const cl::Device& device) {
     if (!device.getInfo<CL_DEVICE_AVAILABLE>()) return "the device is not available";
     if (!device.getInfo<CL_DEVICE_COMPILER_AVAILABLE>()) return "the device has no compiler";
     if (!device.getInfo<CL_DEVICE_ENDIAN_LITTLE>()) return "the device is big-endian";
-    if (extensions.find("cl_khr_int64_base_atomics") == std::string::npos)
-        return "the device has no 64-bit integer atomics (cl_khr_int64_base_atomics)";
+    for (const char* atomics : {"cl_khr_int64_base_atomics", "cl_khr_int64_extended_atomics"})
+        if (extensions.find(atomics) == std::string::npos)
+            return fmt::format("the device has no 64-bit integer atomics ({})", atomics);
     return {};
 }
 
