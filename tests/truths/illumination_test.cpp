@@ -120,6 +120,18 @@ TEST(Guard, a_light_behind_a_smooth_triangle_is_in_its_shadow_even_if_the_shadin
     EXPECT_EQ(seen(degrees(120)), 0);
 }
 
+TEST(Guard, without_shadows_a_light_below_the_geometric_horizon_gives_nothing) {
+    const auto seen = [](double light_angle) {
+        const dvec3 to_light(std::sin(light_angle), 0, std::cos(light_angle));
+        SceneBuilder b = tilted_triangle(degrees(40), -to_light);
+        b.scene.settings.shadows = ShadowMode::none;
+        return look(b.scene, {0, 0, 2}, {0, 0, 0}).x;
+    };
+    // The shading normal at 40 degrees sees both; the geometric one only the first. cos(theta) + 1, as above.
+    EXPECT_NEAR(seen(degrees(89.9)), std::cos(degrees(49.9)) + 1, hit_roundings);
+    EXPECT_EQ(seen(degrees(90.1)), 0);
+}
+
 TEST(Facing, both_sides_of_a_surface_are_lit_alike) {
     SceneBuilder b = floor_of(white());
     b.add_light(directional_light({0, 1, 0}, 0.75));  // from below
