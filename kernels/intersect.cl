@@ -7,28 +7,19 @@
 #include "lib/film.h"
 #include "lib/packet.h"
 
-/// Closest hits of a chunk of coherent rays, together; false, and nothing done, if they are better traced one by one.
-static bool intersect_together(const Geometry* geometry, global const Ray* rays, uint count, global Hit* hits) {
 #ifdef RAYMILL_PACKETS
+static void intersect_chunk(const Geometry* geometry, global const Ray* rays, uint count, global Hit* hits) {
     Packet packet;
-    float3 origins[CHUNK], directions[CHUNK];
-    for (uint i = 0; i < count; ++i) {
-        origins[i] = load3(rays[i].origin);
-        directions[i] = load3(rays[i].direction);
-    }
-    if (!are_coherent(directions, count)) return false;
-    packet_start(&packet);
-    for (uint i = 0; i < count; ++i) {
-        packet_add(&packet, origins[i], directions[i], closest_plane(geometry, origins[i], directions[i], INFINITY));
-    }
-    packet_fill(&packet);
-    traverse_packet(geometry, &packet, false, origins, directions);
-    for (uint i = 0; i < count; ++i) hits[i] = packet_hit(&packet, i);
-    return true;
-#else
-    return false;
-#endif
+    for (uint i = 0; i < count; ++i) chunk_add(&packet.rays, i, rays[i].origin, rays[i].direction, INFINITY);
+    chunk_prepare(&packet.rays, count);
+    traverse_chunk(geometry, &packet, false);
+    for (uint i = 0; i < count; ++i) hits[i] = chunk_hit(&packet.rays, i);
 }
+#else
+static void intersect_chunk(const Geometry* geometry, global const Ray* rays, uint count, global Hit* hits) {
+    for (uint i = 0; i < count; ++i) hits[i] = closest_hit(geometry, load3(rays[i].origin), load3(rays[i].direction));
+}
+#endif
 
 /// One work-item a chunk of CHUNK rays.
 kernel void intersect(global const Ray* rays, uint first_ray, uint count, global const BvhNode* nodes,
@@ -41,11 +32,7 @@ kernel void intersect(global const Ray* rays, uint first_ray, uint count, global
     const uint begin = get_global_id(0) * CHUNK;
     const uint end = min(begin + CHUNK, count);
     if (begin >= count) return;
-    if (!intersect_together(&geometry, rays + first_ray + begin, end - begin, hits + begin))
-        for (uint i = begin; i < end; ++i) {
-            global const Ray* ray = rays + first_ray + i;
-            hits[i] = closest_hit(&geometry, load3(ray->origin), load3(ray->direction));
-        }
+    intersect_chunk(&geometry, rays + first_ray + begin, end - begin, hits + begin);
     for (uint i = begin; i < end; ++i) {
         global const Ray* ray = rays + first_ray + i;
         if (hits[i].primitive != NO_INDEX) {

@@ -7,43 +7,37 @@
 #include "lib/packet.h"
 #include "lib/surface.h"
 
-/// Finds out for a segment of coherent shadow rays what nothing at all stands in the way of: one bit of `clear` a ray.
-/// The others are blocked, or filtered. False, and nothing done, if the rays are better traced one by one.
-static bool look_together(const Geometry* geometry, global const ShadowRay* rays, uint count, ulong* clear) {
+/// Finds out for a segment of shadow rays what nothing at all stands in the way of: one bit a ray. The others are blocked,
+/// or filtered.
 #ifdef RAYMILL_PACKETS
+static ulong clear_rays(const Geometry* geometry, global const ShadowRay* rays, uint count) {
     Packet packet;
-    float3 origins[CHUNK], directions[CHUNK];
-    for (uint i = 0; i < count; ++i) {
-        origins[i] = load3(rays[i].origin);
-        directions[i] = load3(rays[i].direction);
-    }
-    if (!are_coherent(directions, count)) return false;
-    packet_start(&packet);
-    for (uint i = 0; i < count; ++i) {
-        Hit best = closest_plane(geometry, origins[i], directions[i], rays[i].t_max);
-        if (best.primitive != NO_INDEX) best.t = -1.0f;
-        packet_add(&packet, origins[i], directions[i], best);
-    }
-    packet_fill(&packet);
-    traverse_packet(geometry, &packet, true, origins, directions);
+    for (uint i = 0; i < count; ++i) chunk_add(&packet.rays, i, rays[i].origin, rays[i].direction, rays[i].t_max);
+    chunk_prepare(&packet.rays, count);
+    traverse_chunk(geometry, &packet, true);
+    ulong clear = 0;
     for (uint i = 0; i < count; ++i)
-        if (packet.best_primitive[i] == NO_INDEX) *clear |= 1ul << i;
-    return true;
-#else
-    return false;
-#endif
+        if (chunk_hit(&packet.rays, i).primitive == NO_INDEX) clear |= 1ul << i;
+    return clear;
 }
+#else
+static ulong clear_rays(const Geometry* geometry, global const ShadowRay* rays, uint count) {
+    ulong clear = 0;
+    for (uint i = 0; i < count; ++i)
+        if (!is_blocked(geometry, load3(rays[i].origin), load3(rays[i].direction), rays[i].t_max)) clear |= 1ul << i;
+    return clear;
+}
+#endif
 
 /// Whether a surface in the way may let some light through.
 static inline bool filters(constant SceneConstants* constants) {
     return constants->shadows == SHADOWS_FILTERED && constants->any_filter;
 }
 
-/// What is left of light from t_max away: filtered by every transmissive surface on the way, each crossing once.
+/// What is left of light from t_max away after what stands in its way: filtered by every transmissive surface, each
+/// crossing once.
 static inline float3 transmittance(const Geometry* geometry, const World* world, global const ShadowRay* ray) {
     const float3 origin = load3(ray->origin), direction = load3(ray->direction);
-    if (!filters(world->constants))
-        return is_blocked(geometry, origin, direction, ray->t_max) ? (float3)(0.0f) : (float3)(1.0f);
     // In the order of distance, so that the product's bits do not depend on the hierarchy.
     float3 left = (float3)(1.0f);
     Hit hit = {0.0f, 0.0f, 0.0f, NO_INDEX};
@@ -69,14 +63,13 @@ kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shado
     if (segment >= segment_count) return;
     const uint count = shadow_counts[segment];
     if (count == 0) return;
-    ulong clear = constants->shadows == SHADOWS_NONE ? ~0ul : 0ul;
-    const bool known =
-        clear != 0 || look_together(&geometry, shadow_rays + segment * CHUNK, count, &clear);
+    const ulong clear =
+        constants->shadows == SHADOWS_NONE ? ~0ul : clear_rays(&geometry, shadow_rays + segment * CHUNK, count);
     uint blocked = 0;
     for (uint i = 0; i < count; ++i) {
         global const ShadowRay* ray = shadow_rays + segment * CHUNK + i;
         float3 left = clear >> i & 1ul ? (float3)(1.0f) : (float3)(0.0f);
-        if (!known || (!(clear >> i & 1ul) && filters(constants))) left = transmittance(&geometry, &world, ray);
+        if (!(clear >> i & 1ul) && filters(constants)) left = transmittance(&geometry, &world, ray);
         if (ray->route == ROUTE_CAMERA && film_keeps(&film, FILM_SHADOW)) {
             film_add(&film, FILM_SHADOW, ray->pixel, left);
             film_add_units(&film, film_pixel(&film, FILM_SHADOW, ray->pixel) + 3, FILM_ONE);

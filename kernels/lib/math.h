@@ -36,8 +36,14 @@ static inline float3 unit3(float3 v) { return v / length3(v); }
 static inline float8 min8(float8 a, float8 b) { return select(b, a, a < b); }
 static inline float8 max8(float8 a, float8 b) { return select(b, a, a > b); }
 
-/// Index of the lowest bit set; mask must not be zero.
-static inline uint lowest_bit(uint mask) { return 31u - clz(mask & (0u - mask)); }
+static inline float16 min16(float16 a, float16 b) { return select(b, a, a < b); }
+static inline float16 max16(float16 a, float16 b) { return select(b, a, a > b); }
+
+/// Eight floats at a multiple of 32 bytes: one load, which vload8 is not.
+static inline float8 aligned8(global const float* p) { return *(global const float8*)p; }
+
+/// Index of the lowest bit set; mask must not be zero. Compilers know this as one instruction.
+static inline uint lowest_bit(uint mask) { return popcount(~mask & (mask - 1u)); }
 
 static inline float max3(float3 v) { return fmax(fmax(v.x, v.y), v.z); }
 

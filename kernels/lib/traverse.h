@@ -30,12 +30,12 @@ static inline Geometry scene_geometry(global const BvhNode* nodes, global const 
 /// Children whose boxes the ray meets in [0, t_max], and where it enters them.
 static inline uint intersect_children(global const BvhNode* node, SlabFrame f, float t_max, float8* entry) {
     global const float* planes = &node->bounds[0][0][0];
-    const float8 near_x = fma(vload8(f.sign[0] * 3, planes), (float8)(f.inverse.x), (float8)(f.near.x));
-    const float8 near_y = fma(vload8(f.sign[1] * 3 + 1, planes), (float8)(f.inverse.y), (float8)(f.near.y));
-    const float8 near_z = fma(vload8(f.sign[2] * 3 + 2, planes), (float8)(f.inverse.z), (float8)(f.near.z));
-    const float8 far_x = fma(vload8(3 - f.sign[0] * 3, planes), (float8)(f.inverse.x), (float8)(f.far.x));
-    const float8 far_y = fma(vload8(4 - f.sign[1] * 3, planes), (float8)(f.inverse.y), (float8)(f.far.y));
-    const float8 far_z = fma(vload8(5 - f.sign[2] * 3, planes), (float8)(f.inverse.z), (float8)(f.far.z));
+    const float8 near_x = fma(aligned8(planes + (f.sign[0] * 3) * BVH_WIDTH), (float8)(f.inverse.x), (float8)(f.near.x));
+    const float8 near_y = fma(aligned8(planes + (f.sign[1] * 3 + 1) * BVH_WIDTH), (float8)(f.inverse.y), (float8)(f.near.y));
+    const float8 near_z = fma(aligned8(planes + (f.sign[2] * 3 + 2) * BVH_WIDTH), (float8)(f.inverse.z), (float8)(f.near.z));
+    const float8 far_x = fma(aligned8(planes + (3 - f.sign[0] * 3) * BVH_WIDTH), (float8)(f.inverse.x), (float8)(f.far.x));
+    const float8 far_y = fma(aligned8(planes + (4 - f.sign[1] * 3) * BVH_WIDTH), (float8)(f.inverse.y), (float8)(f.far.y));
+    const float8 far_z = fma(aligned8(planes + (5 - f.sign[2] * 3) * BVH_WIDTH), (float8)(f.inverse.z), (float8)(f.far.z));
     const float8 enter = max8(max8(near_x, near_y), max8(near_z, (float8)(0.0f)));
     const float8 leave = min8(min8(far_x, far_y), min8(far_z, (float8)(t_max)));
     *entry = enter;
@@ -111,66 +111,93 @@ static inline void visit_planes(const Geometry* geometry, Query* query) {
     }
 }
 
-/// Pushes the children in `mask` so that the nearest is on top. An entry is the distance's bits above the child word:
-/// distances are not negative, so integers sort like floats.
-static inline uint push_children(global const BvhNode* node, uint mask, float8 entry8, ulong* stack, uint top) {
-    float entry[BVH_WIDTH];
-    vstore8(entry8, 0, entry);
-    const uint bottom = top;
-    for (; mask != 0; mask &= mask - 1) {
-        const uint lane = lowest_bit(mask);
-        const ulong item = (ulong)as_uint(entry[lane]) << 32 | node->child[lane];
-        uint place = top++;
-        for (; place > bottom && stack[place - 1] < item; --place) stack[place] = stack[place - 1];
-        stack[place] = item;
-    }
-    return top;
+/// Stack entries: the distance's bits above the child word. Distances are not negative, so integers sort like floats.
+/// The three lowest bits of the distance make way for the lane, which makes entries of a node differ; the distance only
+/// becomes a little smaller.
+static inline uint8 entry_keys(float8 entry) {
+    return (as_uint8(entry) & ~7u) | (uint8)(0, 1, 2, 3, 4, 5, 6, 7);
 }
 
-/// Finds the first hit in the query's range; best stays as it is if there is none.
+/// How many lanes have a larger key, lane by lane: the place, from the bottom, of each in the order of distance.
+static inline uint8 places_by_distance(uint8 key8) {
+    const int8 key = as_int8(key8);
+    int8 place = key.s12345670 > key;
+    place += key.s23456701 > key;
+    place += key.s34567012 > key;
+    place += key.s45670123 > key;
+    place += key.s56701234 > key;
+    place += key.s67012345 > key;
+    place += key.s70123456 > key;
+    return as_uint8(-place);
+}
+
+/// Pushes the children in `mask` so that the nearest is on top.
+static inline uint push_children(global const uint* children, uint mask, float8 entry, ulong* stack, uint top) {
+    uint key[BVH_WIDTH], place[BVH_WIDTH];
+    // Lanes that are not in the mask are nearer than any, so that their places lie above the top.
+    const uint8 is_in = (uint8)(mask) & (uint8)(1, 2, 4, 8, 16, 32, 64, 128);
+    const uint8 key8 = entry_keys(entry);
+    *(uint8*)key = key8;
+    *(uint8*)place = places_by_distance(select(as_uint8((int8)(-1)), key8, is_in != 0));
+    const uint count = popcount(mask);
+    for (; mask != 0; mask &= mask - 1) {
+        const uint lane = lowest_bit(mask);
+        stack[top + place[lane]] = (ulong)key[lane] << 32 | children[lane];
+    }
+    return top + count;
+}
+
+/// Finds the first hit in the query's range among the primitives of the hierarchy; best stays as it is if there is none.
 /// With any_hit the first one met will do, whichever it is.
-static void traverse(const Geometry* geometry, Query* query, bool any_hit) {
+static void traverse(const Geometry* geometry, Query* query, const SlabFrame* slabs, TriangleFrame frame, bool any_hit) {
     const uint none = query->best.primitive;
-    visit_planes(geometry, query);
     if (geometry->node_count == 0) return;
-    const SlabFrame slabs = slab_frame(query->origin, query->direction);
-    const TriangleFrame frame = triangle_frame(query->origin, query->direction);
     ulong stack[STACK_SIZE];
-    stack[0] = 0;  // the root at distance 0
-    uint top = 1;
-    while (top > 0) {
-        if (any_hit && query->best.primitive != none) return;
-        const ulong item = stack[--top];
-        if (as_float((uint)(item >> 32)) > query->best.t) continue;
-        const uint child = (uint)item;
-        if (child & CHILD_LEAF) {
+    uint top = 0;
+    uint child = 0;  // the root
+    for (;;) {
+        if (!(child & CHILD_LEAF)) {
+            global const BvhNode* node = geometry->nodes + child;
+            float8 entry;
+            const uint mask = intersect_children(node, *slabs, query->best.t, &entry);
+            if ((mask & (mask - 1)) != 0) {
+                top = push_children(node->child, mask, entry, stack, top);
+            } else if (mask != 0) {
+                child = node->child[lowest_bit(mask)];
+                continue;
+            }
+        } else {
             const uint first = child & CHILD_FIRST_MASK;
             const uint last = first + (child >> CHILD_BLOCKS_SHIFT & CHILD_BLOCKS_MASK);
             for (uint block = first; block <= last; ++block) {
                 if (child & CHILD_SPHERES)
-                    visit_spheres(geometry->spheres + block, &slabs, query);
+                    visit_spheres(geometry->spheres + block, slabs, query);
                 else
-                    visit_triangles(geometry->triangles + block, &slabs, frame, query);
+                    visit_triangles(geometry->triangles + block, slabs, frame, query);
             }
-        } else {
-            float8 entry;
-            const uint mask = intersect_children(geometry->nodes + child, slabs, query->best.t, &entry);
-            top = push_children(geometry->nodes + child, mask, entry, stack, top);
+            if (any_hit && query->best.primitive != none) return;
         }
+        ulong item;
+        do {
+            if (top == 0) return;
+            item = stack[--top];
+        } while (as_float((uint)(item >> 32)) > query->best.t);
+        child = (uint)item;
     }
+}
+
+/// traverse() among all primitives, infinite planes included.
+static void traverse_all(const Geometry* geometry, Query* query, bool any_hit) {
+    visit_planes(geometry, query);
+    if (any_hit && query->best.primitive != NO_INDEX) return;
+    const SlabFrame slabs = slab_frame(query->origin, query->direction);
+    traverse(geometry, query, &slabs, triangle_frame(query->origin, query->direction), any_hit);
 }
 
 /// The closest hit in front of the ray later than `after`; primitive is NO_INDEX if there is none.
 static inline Hit closest_hit_after(const Geometry* geometry, float3 origin, float3 direction, Hit after, float t_max) {
     Query query = {origin, direction, after, {t_max, 0.0f, 0.0f, NO_INDEX}};
-    traverse(geometry, &query, false);
-    return query.best;
-}
-
-/// The closest hit among the infinite planes alone.
-static inline Hit closest_plane(const Geometry* geometry, float3 origin, float3 direction, float t_max) {
-    Query query = {origin, direction, {0.0f, 0.0f, 0.0f, NO_INDEX}, {t_max, 0.0f, 0.0f, NO_INDEX}};
-    visit_planes(geometry, &query);
+    traverse_all(geometry, &query, false);
     return query.best;
 }
 
@@ -182,7 +209,7 @@ static inline Hit closest_hit(const Geometry* geometry, float3 origin, float3 di
 /// Whether anything lies between the origin and t_max.
 static inline bool is_blocked(const Geometry* geometry, float3 origin, float3 direction, float t_max) {
     Query query = {origin, direction, {0.0f, 0.0f, 0.0f, NO_INDEX}, {t_max, 0.0f, 0.0f, NO_INDEX}};
-    traverse(geometry, &query, true);
+    traverse_all(geometry, &query, true);
     return query.best.primitive != NO_INDEX;
 }
 

@@ -23,17 +23,24 @@ static inline uint largest_axis(float3 direction) {
     return a.x > a.y ? (a.x > a.z ? 0u : 2u) : (a.y > a.z ? 1u : 2u);
 }
 
-static inline TriangleFrame triangle_frame(float3 origin, float3 direction) {
+/// The axes of the frame of a ray whose largest axis this is; backward: the direction is negative there.
+static inline TriangleFrame frame_axes(uint largest, bool backward) {
     TriangleFrame f;
-    f.z = largest_axis(direction);
+    f.z = largest;
     f.x = f.z == 2 ? 0u : f.z + 1;
     f.y = f.x == 2 ? 0u : f.x + 1;
-    if (component(direction, f.z) < 0.0f) {
+    if (backward) {
         const uint swap = f.x;
         f.x = f.y;
         f.y = swap;
     }
-    const float along = component(direction, f.z);
+    return f;
+}
+
+static inline TriangleFrame triangle_frame(float3 origin, float3 direction) {
+    const uint largest = largest_axis(direction);
+    const float along = component(direction, largest);
+    TriangleFrame f = frame_axes(largest, along < 0.0f);
     f.origin_x = component(origin, f.x);
     f.origin_y = component(origin, f.y);
     f.origin_z = component(origin, f.z);
@@ -85,9 +92,9 @@ static inline float8 enter_triangles(global const TriangleBlock* block, const Sl
     const float near[3] = {slabs->near.x, slabs->near.y, slabs->near.z};
     float8 enter = (float8)(0.0f);
     for (uint axis = 0; axis < 3; ++axis) {
-        const float8 a = fma(vload8(axis, p), (float8)(inverse[axis]), (float8)(near[axis]));
-        const float8 b = fma(vload8(3 + axis, p), (float8)(inverse[axis]), (float8)(near[axis]));
-        const float8 c = fma(vload8(6 + axis, p), (float8)(inverse[axis]), (float8)(near[axis]));
+        const float8 a = fma(aligned8(p + axis * BVH_WIDTH), (float8)(inverse[axis]), (float8)(near[axis]));
+        const float8 b = fma(aligned8(p + (3 + axis) * BVH_WIDTH), (float8)(inverse[axis]), (float8)(near[axis]));
+        const float8 c = fma(aligned8(p + (6 + axis) * BVH_WIDTH), (float8)(inverse[axis]), (float8)(near[axis]));
         enter = max8(min8(min8(a, b), c), enter);
     }
     return enter;
@@ -98,15 +105,15 @@ static inline float8 enter_triangles(global const TriangleBlock* block, const Sl
 static inline uint intersect_triangles(global const TriangleBlock* block, const SlabFrame* slabs, TriangleFrame f,
                                        float t_max, float8* t, float8* u, float8* v) {
     global const float* p = &block->position[0][0][0];
-    const float8 az = vload8(f.z, p) - f.origin_z;
-    const float8 bz = vload8(3 + f.z, p) - f.origin_z;
-    const float8 cz = vload8(6 + f.z, p) - f.origin_z;
-    const float8 ax = fma((float8)(-f.shear_x), az, vload8(f.x, p) - f.origin_x);
-    const float8 ay = fma((float8)(-f.shear_y), az, vload8(f.y, p) - f.origin_y);
-    const float8 bx = fma((float8)(-f.shear_x), bz, vload8(3 + f.x, p) - f.origin_x);
-    const float8 by = fma((float8)(-f.shear_y), bz, vload8(3 + f.y, p) - f.origin_y);
-    const float8 cx = fma((float8)(-f.shear_x), cz, vload8(6 + f.x, p) - f.origin_x);
-    const float8 cy = fma((float8)(-f.shear_y), cz, vload8(6 + f.y, p) - f.origin_y);
+    const float8 az = aligned8(p + f.z * BVH_WIDTH) - f.origin_z;
+    const float8 bz = aligned8(p + (3 + f.z) * BVH_WIDTH) - f.origin_z;
+    const float8 cz = aligned8(p + (6 + f.z) * BVH_WIDTH) - f.origin_z;
+    const float8 ax = fma((float8)(-f.shear_x), az, aligned8(p + f.x * BVH_WIDTH) - f.origin_x);
+    const float8 ay = fma((float8)(-f.shear_y), az, aligned8(p + f.y * BVH_WIDTH) - f.origin_y);
+    const float8 bx = fma((float8)(-f.shear_x), bz, aligned8(p + (3 + f.x) * BVH_WIDTH) - f.origin_x);
+    const float8 by = fma((float8)(-f.shear_y), bz, aligned8(p + (3 + f.y) * BVH_WIDTH) - f.origin_y);
+    const float8 cx = fma((float8)(-f.shear_x), cz, aligned8(p + (6 + f.x) * BVH_WIDTH) - f.origin_x);
+    const float8 cy = fma((float8)(-f.shear_y), cz, aligned8(p + (6 + f.y) * BVH_WIDTH) - f.origin_y);
 
     // Twice the areas opposite each vertex: products rounded alike on both sides of an edge, so the signs agree there.
     const float8 ua = cx * by - cy * bx;

@@ -1,0 +1,149 @@
+// A chunk of rays as structure of arrays, with the frames that slabs.h and triangle.h give each ray alone: the same
+// arithmetic, sixteen rays at a time.
+#ifndef RAYMILL_CHUNK_H
+#define RAYMILL_CHUNK_H
+
+#include "lib/traverse.h"
+
+#define GROUP 16                // rays of one vector
+#define GROUPS (CHUNK / GROUP)  // vectors of a chunk
+
+// Bits of RayChunk::octant: the largest axis of the direction, and from OCTANT_SIGN on the sign of each axis.
+#define OCTANT_AXIS 3u
+#define OCTANT_SIGN 2u
+
+/// Up to CHUNK rays: ray i is lane i % GROUP of vector i / GROUP. Places without a ray repeat ray 0, with best_t = -1,
+/// which no distance is below: what is tested finds nothing for them.
+typedef struct {
+    float16 origin[3][GROUPS], direction[3][GROUPS];
+    float16 inverse[3][GROUPS], near[3][GROUPS], far[3][GROUPS];  // SlabFrame
+    float16 shear[3][GROUPS];                                     // TriangleFrame: x, y, z
+    float16 best_t[GROUPS], best_u[GROUPS], best_v[GROUPS];
+    uint16 best_primitive[GROUPS];
+    uint16 octant[GROUPS];
+    uint count;
+} RayChunk;
+
+static inline float get_lane(const float16* vectors, uint i) { return ((const float*)vectors)[i]; }
+static inline void set_lane(float16* vectors, uint i, float value) { ((float*)vectors)[i] = value; }
+
+/// Call for each i from 0 on, then chunk_prepare(). Nothing farther than t_max counts.
+static inline void chunk_add(RayChunk* c, uint i, global const float* origin, global const float* direction, float t_max) {
+    for (uint axis = 0; axis < 3; ++axis) {
+        set_lane(c->origin[axis], i, origin[axis]);
+        set_lane(c->direction[axis], i, direction[axis]);
+    }
+    set_lane(c->best_t, i, t_max);
+}
+
+/// slab_frame() of a group on one axis.
+static inline void prepare_slabs(RayChunk* c, uint group, uint axis) {
+    const float16 direction = c->direction[axis][group];
+    const int16 parallel = fabs(direction) < 1e-24f;
+    const float16 d = select(direction, copysign((float16)(1e-24f), direction), parallel);
+    const float16 inverse = 1.0f / d;
+    const float16 offset = -c->origin[axis][group] * inverse;
+    const float16 rounding = fabs(offset) * (3.0f * ROUNDING);
+    const float16 error = select(rounding, max16(rounding, (float16)(1e12f)), parallel);
+    c->inverse[axis][group] = inverse;
+    c->near[axis][group] = offset - error;
+    c->far[axis][group] = offset + error;
+    c->octant[group] |= as_uint16(d) >> 31 << (OCTANT_SIGN + axis);
+}
+
+/// triangle_frame() of a group.
+static inline void prepare_triangle_frame(RayChunk* c, uint group) {
+    const float16 x = c->direction[0][group], y = c->direction[1][group], z = c->direction[2][group];
+    const int16 z_over_x = fabs(z) >= fabs(x), z_over_y = fabs(z) >= fabs(y);
+    const int16 is_x = (fabs(x) > fabs(y)) & ~z_over_x, is_y = ~(fabs(x) > fabs(y)) & ~z_over_y;
+    c->octant[group] = as_uint16(select(select((int16)(2), (int16)(1), is_y), (int16)(0), is_x));
+    const float16 along = select(select(z, y, is_y), x, is_x);
+    const float16 next = select(select(x, z, is_y), y, is_x);
+    const float16 last = select(select(y, x, is_y), z, is_x);
+    const int16 swap = along < 0.0f;
+    c->shear[0][group] = select(next, last, swap) / along;
+    c->shear[1][group] = select(last, next, swap) / along;
+    c->shear[2][group] = 1.0f / along;
+}
+
+/// Repeats ray 0 in the places without a ray, and makes the frames. count > 0.
+static inline void chunk_prepare(RayChunk* c, uint count) {
+    c->count = count;
+    for (uint i = count; i < CHUNK; ++i) {
+        for (uint axis = 0; axis < 3; ++axis) {
+            set_lane(c->origin[axis], i, get_lane(c->origin[axis], 0));
+            set_lane(c->direction[axis], i, get_lane(c->direction[axis], 0));
+        }
+        set_lane(c->best_t, i, -1.0f);
+    }
+    for (uint group = 0; group < GROUPS; ++group) {
+        prepare_triangle_frame(c, group);
+        for (uint axis = 0; axis < 3; ++axis) prepare_slabs(c, group, axis);
+        c->best_u[group] = 0.0f;
+        c->best_v[group] = 0.0f;
+        c->best_primitive[group] = NO_INDEX;
+    }
+}
+
+/// visit_planes() of all rays.
+static inline void chunk_visit_planes(RayChunk* c, const Geometry* geometry) {
+    for (uint i = 0; i < geometry->plane_count; ++i) {
+        const float3 normal = load3(geometry->planes[i].normal), point = load3(geometry->planes[i].point);
+        const uint primitive = geometry->first_plane + i;
+        for (uint group = 0; group < GROUPS; ++group) {
+            const float16 x = c->origin[0][group] - point.x, y = c->origin[1][group] - point.y;
+            const float16 z = c->origin[2][group] - point.z;
+            const float16 height = fma((float16)(normal.x), x, fma((float16)(normal.y), y, normal.z * z));
+            const float16 approach = fma((float16)(normal.x), c->direction[0][group],
+                                         fma((float16)(normal.y), c->direction[1][group],
+                                             normal.z * c->direction[2][group]));
+            const float16 t = -height / approach, best_t = c->best_t[group];
+            const int16 hit = (t > 0.0f) & (t < INFINITY) &
+                              ((t < best_t) | ((t == best_t) & (primitive < c->best_primitive[group])));
+            c->best_t[group] = select(best_t, t, hit);
+            c->best_primitive[group] = select(c->best_primitive[group], (uint16)(primitive), hit);
+        }
+    }
+}
+
+/// What ray i has found.
+static inline Hit chunk_hit(const RayChunk* c, uint i) {
+    const Hit hit = {get_lane(c->best_t, i), get_lane(c->best_u, i), get_lane(c->best_v, i),
+                     ((const uint*)c->best_primitive)[i]};
+    return hit;
+}
+
+static inline void chunk_set_hit(RayChunk* c, uint i, Hit hit) {
+    set_lane(c->best_t, i, hit.t);
+    set_lane(c->best_u, i, hit.u);
+    set_lane(c->best_v, i, hit.v);
+    ((uint*)c->best_primitive)[i] = hit.primitive;
+}
+
+/// Goes on with ray i alone, from its best hit so far.
+static inline Hit chunk_traverse_ray(const RayChunk* c, const Geometry* geometry, uint i, bool any_hit) {
+    const uint octant = ((const uint*)c->octant)[i];
+    Query query;
+    query.after.t = 0.0f;
+    query.after.primitive = NO_INDEX;
+    query.best = chunk_hit(c, i);
+    query.origin = (float3)(get_lane(c->origin[0], i), get_lane(c->origin[1], i), get_lane(c->origin[2], i));
+    query.direction =
+        (float3)(get_lane(c->direction[0], i), get_lane(c->direction[1], i), get_lane(c->direction[2], i));
+    SlabFrame slabs;
+    slabs.inverse = (float3)(get_lane(c->inverse[0], i), get_lane(c->inverse[1], i), get_lane(c->inverse[2], i));
+    slabs.near = (float3)(get_lane(c->near[0], i), get_lane(c->near[1], i), get_lane(c->near[2], i));
+    slabs.far = (float3)(get_lane(c->far[0], i), get_lane(c->far[1], i), get_lane(c->far[2], i));
+    for (uint axis = 0; axis < 3; ++axis) slabs.sign[axis] = octant >> (OCTANT_SIGN + axis) & 1u;
+    TriangleFrame frame = frame_axes(octant & OCTANT_AXIS, slabs.sign[octant & OCTANT_AXIS] != 0);
+    frame.origin_x = get_lane(c->origin[frame.x], i);
+    frame.origin_y = get_lane(c->origin[frame.y], i);
+    frame.origin_z = get_lane(c->origin[frame.z], i);
+    frame.shear_x = get_lane(c->shear[0], i);
+    frame.shear_y = get_lane(c->shear[1], i);
+    frame.shear_z = get_lane(c->shear[2], i);
+    traverse(geometry, &query, &slabs, frame, any_hit);
+    return query.best;
+}
+
+#endif
