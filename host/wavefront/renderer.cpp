@@ -151,11 +151,15 @@ Frame Renderer::render(const Progress& progress, bool time_stages) try {
 
 void Renderer::trace(const Batch& batch) {
     const QueueRange<Ray> rays{queues_[static_cast<std::size_t>(batch.depth)], batch.first, batch.count};
+    const bool pixels_once = batch.depth == 0 && scene_.settings.spp == 1;
+    film_.pixels_once = pixels_once;
     stages_.intersect(device_scene_, rays, hits_, film_);
     show("intersect", batch);
     for (const SlotRange& slots : slot_ranges_) {
+        film_.pixels_once = pixels_once;
         stages_.shade(device_scene_, rays, hits_, slots, shadow_queue_, film_);
         show("shade", batch, slots);
+        film_.pixels_once = pixels_once && slots.count == 1;  // each light sample has a shadow ray of its own
         stages_.shadow(device_scene_, shadow_queue_, Stages::chunks(batch.count) * slots.count, film_);
         show("shadow", batch, slots);
     }
