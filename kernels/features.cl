@@ -35,9 +35,9 @@ kernel void features(global const Ray* rays, uint first_ray, uint count, uint de
                      global const Vertex* vertices, global const Triangle* triangles, global const Sphere* spheres,
                      global const Plane* planes, global const Material* materials, global const Texture* textures,
                      global const float* texels, constant CameraRecord* camera, constant SceneConstants* constants,
-                     global long* film_sums, global Counters* counters) {
+                     global long* film_sums, global Counters* counters, uint pixels_once) {
     const World world = {vertices, triangles, spheres, planes, materials, textures, texels, constants};
-    const Film film = {film_sums, counters, constants};
+    const Film film = {film_sums, counters, constants, pixels_once != 0};
     const uint begin = get_global_id(0) * CHUNK;
     const uint end = min(begin + CHUNK, count);
     for (uint i = begin; i < end; ++i) {

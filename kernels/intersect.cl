@@ -26,8 +26,8 @@ kernel void intersect(global const Ray* rays, uint first_ray, uint count, global
                       global const TriangleBlock* triangle_blocks, global const SphereBlock* sphere_blocks,
                       global const Plane* planes, global const Texture* textures, global const float* texels,
                       constant SceneConstants* constants, global Hit* hits, global long* film_sums,
-                      global Counters* counters) {
-    const Film film = {film_sums, counters, constants};
+                      global Counters* counters, uint pixels_once) {
+    const Film film = {film_sums, counters, constants, pixels_once != 0};
     const Geometry geometry = scene_geometry(nodes, triangle_blocks, sphere_blocks, planes, constants);
     const uint begin = get_global_id(0) * CHUNK;
     const uint end = min(begin + CHUNK, count);

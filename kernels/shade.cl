@@ -13,8 +13,8 @@ kernel void shade(global const Ray* rays, uint first_ray, uint count, global con
                   global const Vertex* vertices, global const Triangle* triangles, global const Sphere* spheres,
                   global const Plane* planes, global const Material* materials, global const Texture* textures,
                   global const float* texels, constant SceneConstants* constants, global ShadowRay* shadow_rays,
-                  global uint* shadow_counts, global long* film_sums, global Counters* counters) {
-    const Film film = {film_sums, counters, constants};
+                  global uint* shadow_counts, global long* film_sums, global Counters* counters, uint pixels_once) {
+    const Film film = {film_sums, counters, constants, pixels_once != 0};
     const World world = {vertices, triangles, spheres, planes, materials, textures, texels, constants};
     const uint chunk = get_global_id(0);
     const uint begin = chunk * CHUNK;
@@ -27,10 +27,9 @@ kernel void shade(global const Ray* rays, uint first_ray, uint count, global con
         if (hit.primitive == NO_INDEX) continue;
         global const Ray* ray = rays + first_ray + i;
         const Shading shading = shading_at(&world, ray, hit);
-        if (first_slot == 0) {
-            film_add_radiance(&film, FILM_AMBIENT, ray->route, ray->pixel, ambient_radiance(&world, &shading));
-            film_add_radiance(&film, FILM_EMISSION, ray->route, ray->pixel, emitted_radiance(&shading));
-        }
+        if (first_slot == 0)
+            film_add_two(&film, ray->route, ray->pixel, FILM_AMBIENT, ambient_radiance(&world, &shading), FILM_EMISSION,
+                         emitted_radiance(&shading));
         if (!answers_light(&shading)) continue;
         for (uint k = 0; k < slot_count; ++k) {
             const LightSlot slot = slots[first_slot + k];

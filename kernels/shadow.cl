@@ -55,8 +55,9 @@ kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shado
                    global const BvhNode* nodes, global const TriangleBlock* triangle_blocks,
                    global const SphereBlock* sphere_blocks, global const Plane* planes,
                    global const Triangle* triangles, global const Sphere* spheres, global const Material* materials,
-                   constant SceneConstants* constants, global long* film_sums, global Counters* counters) {
-    const Film film = {film_sums, counters, constants};
+                   constant SceneConstants* constants, global long* film_sums, global Counters* counters,
+                   uint pixels_once) {
+    const Film film = {film_sums, counters, constants, pixels_once != 0};
     const Geometry geometry = scene_geometry(nodes, triangle_blocks, sphere_blocks, planes, constants);
     const World world = {0, triangles, spheres, planes, materials, 0, 0, constants};
     const uint segment = get_global_id(0);
@@ -75,8 +76,8 @@ kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shado
             film_add_units(&film, film_pixel(&film, FILM_SHADOW, ray->pixel) + 3, FILM_ONE);
         }
         if (any(left != 0.0f)) {
-            film_add_radiance(&film, FILM_DIFFUSE, ray->route, ray->pixel, left * load3(ray->diffuse));
-            film_add_radiance(&film, FILM_SPECULAR, ray->route, ray->pixel, left * load3(ray->specular));
+            film_add_two(&film, ray->route, ray->pixel, FILM_DIFFUSE, left * load3(ray->diffuse), FILM_SPECULAR,
+                         left * load3(ray->specular));
         } else {
             ++blocked;
         }

@@ -1,6 +1,7 @@
 // Typed device memory.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,21 @@ class Buffer {
     Buffer(const Device& device, std::size_t size)
         : size_(size), memory_(device.context, CL_MEM_READ_WRITE, std::max<std::size_t>(size, 1) * sizeof(T)) {}
     Buffer(const Device& device, std::span<const T> values) : Buffer(device, values.size()) { write(device, values); }
+
+    /// The elements of `values`, which must not be empty and must outlive the buffer: a device that is this processor works
+    /// in their memory itself. They are what the device wrote after read_back().
+    static Buffer over(const Device& device, std::span<T> values) {
+        Buffer buffer;
+        buffer.size_ = values.size();
+        buffer.memory_ =
+            cl::Buffer(device.context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, values.size_bytes(), values.data());
+        return buffer;
+    }
+    void read_back(const Device& device) const {
+        void* values = device.queue.enqueueMapBuffer(memory_, CL_TRUE, CL_MAP_READ, 0, size_ * sizeof(T));
+        device.queue.enqueueUnmapMemObject(memory_, values);
+        device.queue.finish();
+    }
 
     /// The first `count` elements in the same memory, as a buffer of their own.
     Buffer first(std::size_t count) const {

@@ -80,6 +80,7 @@ Renderer::Renderer(const Device& device, const Scene& scene, const Bvh& bvh, con
     : device_(device),
       scene_(scene),
       planes_(options.planes),
+      keep_sums_(options.keep_sums),
       plan_(plan_memory(scene, bvh, planes_, options.memory, device.info)),
       stages_(device, options.work_group, options.kernel_dir, options.traversal),
       device_scene_(device, scene, bvh, planes_),
@@ -92,6 +93,8 @@ Renderer::Renderer(const Device& device, const Scene& scene, const Bvh& bvh, con
         hits_ = Buffer<Hit>(device, plan_.queue_capacity);
         shadow_queue_ = {{device, segments * CHUNK}, {device, segments}};
         film_ = {{device, film_pixels(scene) * FILM_CHANNELS * planes_.count()}, {device, 1}};
+        make_ready();
+        device.queue.finish();
     } catch (const cl::Error& error) {
         throw DeviceError(error);
     }
@@ -103,8 +106,8 @@ Frame Renderer::render(const Progress& progress, bool time_stages) try {
     stages_.observe({});
     if (time_stages)
         stages_.observe([&](const char* stage, uint items, const cl::Event& e) { clock.observe(stage, items, e); });
-    film_.sums.clear(device_);
-    film_.counters.clear(device_);
+    make_ready();
+    ready_ = false;
     counts_ = {};
     Frame frame;
 
@@ -127,12 +130,11 @@ Frame Renderer::render(const Progress& progress, bool time_stages) try {
         if (progress) going_on = progress(static_cast<double>(counts_.camera) / static_cast<double>(samples)) && going_on;
     }
 
-    Buffer<float> pixels(device_, film_pixels(scene_) * FILM_CHANNELS);
-    stages_.resolve(film_, static_cast<uint>(scene_.settings.spp), pixels);
-    frame.rgba = pixels.read(device_);
+    frame.rgba = resolve();
+    frame.seconds = seconds_since(start);
     frame.samples_per_pixel = scene_.settings.spp;
     frame.planes = planes_;
-    frame.sums = film_.sums.read(device_);
+    if (keep_sums_) frame.sums = film_.sums.read(device_);
     if (time_stages) clock.drain();
     const Counters counters = film_.counters.read_one(device_);
     counts_.shadow = counters.shadow_rays;
@@ -142,20 +144,39 @@ Frame Renderer::render(const Progress& progress, bool time_stages) try {
     frame.not_a_number = counters.not_a_number;
     frame.finished = samples > 0 ? static_cast<double>(counts_.camera) / static_cast<double>(samples) : 1;
     frame.stages = clock.times();
-    frame.seconds = seconds_since(start);
     stages_.observe({});
     return frame;
 } catch (const cl::Error& error) {
     throw DeviceError(error);
 }
 
+/// Memory costs most when it is touched for the first time: that of the film and the picture is, before the frame begins.
+void Renderer::make_ready() {
+    if (ready_) return;
+    film_.sums.clear(device_);
+    film_.counters.clear(device_);
+    rgba_.assign(film_pixels(scene_) * FILM_CHANNELS, 0.0f);
+    ready_ = true;
+}
+
+std::vector<float> Renderer::resolve() {
+    Buffer<float> pixels = Buffer<float>::over(device_, rgba_);
+    stages_.resolve(film_, static_cast<uint>(scene_.settings.spp), pixels);
+    pixels.read_back(device_);
+    return std::move(rgba_);
+}
+
 void Renderer::trace(const Batch& batch) {
     const QueueRange<Ray> rays{queues_[static_cast<std::size_t>(batch.depth)], batch.first, batch.count};
+    const bool pixels_once = batch.depth == 0 && scene_.settings.spp == 1;
+    film_.pixels_once = pixels_once;
     stages_.intersect(device_scene_, rays, hits_, film_);
     show("intersect", batch);
     for (const SlotRange& slots : slot_ranges_) {
+        film_.pixels_once = pixels_once;
         stages_.shade(device_scene_, rays, hits_, slots, shadow_queue_, film_);
         show("shade", batch, slots);
+        film_.pixels_once = pixels_once && slots.count == 1;  // each light sample has a shadow ray of its own
         stages_.shadow(device_scene_, shadow_queue_, Stages::chunks(batch.count) * slots.count, film_);
         show("shadow", batch, slots);
     }

@@ -17,6 +17,7 @@ namespace raymill {
 struct RenderOptions {
     MemoryRequest memory;
     FilmPlanes planes;           // what the film keeps beside the beauty
+    bool keep_sums = true;       // fills Frame::sums, for layers and for the hash
     std::size_t work_group = 0;  // items; 0: what suits each stage
     Traversal traversal = Traversal::automatic;
     std::string kernel_dir;      // empty: the embedded kernels
@@ -47,7 +48,7 @@ struct Frame {
     std::uint64_t saturated = 0;     // film contributions that were cut
     std::uint64_t not_a_number = 0;  // film contributions that were left out
     std::uint64_t waves = 0;
-    double seconds = 0;              // of the loop
+    double seconds = 0;              // from the first sample to the picture
     double finished = 1;             // share of the camera samples; less than 1 when interrupted
     std::vector<StageTime> stages;   // when timed
 
@@ -92,6 +93,8 @@ class Renderer {
     Frame render(const Progress& progress = {}, bool time_stages = false);
 
   private:
+    void make_ready();
+    std::vector<float> resolve();
     void trace(const Batch& batch);
     void spawn(const Batch& batch, QueueRange<Ray> rays);
     void show(const char* stage, const Batch& batch, SlotRange slots = {}, const Buffer<Ray>* children = nullptr,
@@ -100,6 +103,7 @@ class Renderer {
     const Device& device_;
     const Scene& scene_;
     FilmPlanes planes_;
+    bool keep_sums_;
     MemoryPlan plan_;
     Stages stages_;
     DeviceScene device_scene_;
@@ -109,6 +113,8 @@ class Renderer {
     Buffer<Hit> hits_;
     ShadowQueue shadow_queue_;
     Film film_;
+    std::vector<float> rgba_;  // the picture to come
+    bool ready_ = false;       // film_ and rgba_ are cleared
     std::vector<SlotRange> slot_ranges_;
     RayCounts counts_;
     WaveObserver observer_;

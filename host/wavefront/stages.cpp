@@ -22,6 +22,9 @@ const cl::Buffer& argument(const Buffer<T>& buffer) {
 }
 uint argument(uint value) { return value; }
 cl_ulong argument(std::uint64_t value) { return value; }
+uint argument(bool value) {
+    return value;
+}
 
 }  // namespace
 
@@ -69,7 +72,7 @@ void Stages::generate(const DeviceScene& scene, std::uint64_t first_sample, uint
 void Stages::intersect(const DeviceScene& scene, QueueRange<Ray> rays, Buffer<Hit>& hits, Film& film) {
     launch(intersect_, chunks(rays.count), rays.count, rays.items, rays.first, rays.count, scene.nodes,
            scene.triangle_blocks, scene.sphere_blocks, scene.planes, scene.textures, scene.texels, scene.constants,
-           hits, film.sums, film.counters);
+           hits, film.sums, film.counters, film.pixels_once);
 }
 
 void Stages::shade(const DeviceScene& scene, QueueRange<Ray> rays, const Buffer<Hit>& hits, SlotRange slots,
@@ -77,19 +80,19 @@ void Stages::shade(const DeviceScene& scene, QueueRange<Ray> rays, const Buffer<
     launch(shade_, chunks(rays.count), rays.count, rays.items, rays.first, rays.count, hits, slots.first, slots.count,
            scene.light_slots, scene.lights, scene.vertices, scene.triangles, scene.spheres, scene.planes,
            scene.materials, scene.textures, scene.texels, scene.constants, shadow_rays.rays, shadow_rays.counts,
-           film.sums, film.counters);
+           film.sums, film.counters, film.pixels_once);
 }
 
 void Stages::features(const DeviceScene& scene, QueueRange<Ray> rays, uint depth, const Buffer<Hit>& hits, Film& film) {
     launch(features_, chunks(rays.count), rays.count, rays.items, rays.first, rays.count, depth, hits, scene.vertices,
            scene.triangles, scene.spheres, scene.planes, scene.materials, scene.textures, scene.texels, scene.camera,
-           scene.constants, film.sums, film.counters);
+           scene.constants, film.sums, film.counters, film.pixels_once);
 }
 
 void Stages::shadow(const DeviceScene& scene, const ShadowQueue& shadow_rays, uint segments, Film& film) {
     launch(shadow_, segments, segments * CHUNK, shadow_rays.rays, shadow_rays.counts, segments, scene.nodes,
            scene.triangle_blocks, scene.sphere_blocks, scene.planes, scene.triangles, scene.spheres, scene.materials,
-           scene.constants, film.sums, film.counters);
+           scene.constants, film.sums, film.counters, film.pixels_once);
 }
 
 void Stages::secondary(const DeviceScene& scene, QueueRange<Ray> rays, const Buffer<Hit>& hits, Buffer<Ray>& children,

@@ -28,6 +28,8 @@ struct ShadowQueue {
 struct Film {
     Buffer<cl_long> sums;
     Buffer<Counters> counters;
+    /// No two items of the launches to come have the same pixel, so that they need not add atomically.
+    bool pixels_once = false;
 };
 
 /// Light samples [first, first + count) of the scene's list.

@@ -9,6 +9,7 @@ typedef struct {
     global long* sums;
     global Counters* counters;
     constant SceneConstants* constants;
+    bool pixels_once;  // no two items of the launch have the same pixel, so that plain adds do
 } Film;
 
 /// The pixel's channels of a plane that is kept.
@@ -18,48 +19,79 @@ static inline global long* film_pixel(const Film* film, uint plane, uint pixel) 
 
 static inline bool film_keeps(const Film* film, uint plane) { return film->constants->plane[plane] != 0; }
 
-/// A value in units of the film. NaN is left out and counted; what is beyond FILM_LIMIT is cut and counted.
-static inline long film_units(const Film* film, float value) {
+/// What is stored of a value that the film does not hold: nothing of NaN, FILM_LIMIT of what is beyond it. Both are
+/// counted.
+static float film_cut(const Film* film, float value) {
     if (isnan(value)) {
         atom_inc(&film->counters->not_a_number);
-        return 0;
+        return 0.0f;
     }
-    if (fabs(value) > FILM_LIMIT) {
-        atom_inc(&film->counters->saturated);
-        value = copysign(FILM_LIMIT, value);
-    }
-    return (long)rint(value * 4294967296.0f);
+    atom_inc(&film->counters->saturated);
+    return copysign(FILM_LIMIT, value);
+}
+
+/// A value in units of the film, to the nearest, ties to even. NaN is left out and counted; what is beyond FILM_LIMIT
+/// is cut and counted.
+static inline long film_units(const Film* film, float value) {
+    if (!(fabs(value) <= FILM_LIMIT)) value = film_cut(film, value);
+    value *= 4294967296.0f;
+    // Floats from 2^23 on are whole. To smaller ones 2^23 is added, which leaves no bits behind the point: rint(),
+    // without the dozen instructions that it may take.
+    const float whole = fabs(value) < 8388608.0f ? copysign(8388608.0f, value) : 0.0f;
+    return (long)((value + whole) - whole);
+}
+
+static inline long3 film_units3(const Film* film, float3 value) {
+    return (long3)(film_units(film, value.x), film_units(film, value.y), film_units(film, value.z));
 }
 
 static inline void film_add_units(const Film* film, global long* sum, long units) {
     if (units == 0) return;
-    const long before = atom_add(sum, units);
+    long before;
+    if (film->pixels_once) {
+        before = *sum;
+        *sum = (long)((ulong)before + (ulong)units);
+    } else {
+        before = atom_add(sum, units);
+    }
     const long after = (long)((ulong)before + (ulong)units);
     if (((before ^ after) & (units ^ after)) < 0) atom_inc(&film->counters->saturated);
 }
 
 /// Adds to the first three channels of one plane.
-static inline void film_add(const Film* film, uint plane, uint pixel, float3 value) {
+static inline void film_add_units3(const Film* film, uint plane, uint pixel, long3 units) {
     global long* sum = film_pixel(film, plane, pixel);
-    film_add_units(film, sum + 0, film_units(film, value.x));
-    film_add_units(film, sum + 1, film_units(film, value.y));
-    film_add_units(film, sum + 2, film_units(film, value.z));
+    film_add_units(film, sum + 0, units.x);
+    film_add_units(film, sum + 1, units.y);
+    film_add_units(film, sum + 2, units.z);
 }
 
-/// Adds radiance to the beauty, and to the plane it belongs to if that is kept: `term` for camera hits, else the plane of
-/// the branch that the path took first.
+static inline void film_add(const Film* film, uint plane, uint pixel, float3 value) {
+    film_add_units3(film, plane, pixel, film_units3(film, value));
+}
+
+/// The plane that light of this kind belongs to: `term` for camera hits, else that of the branch which the path took
+/// first.
+static inline uint film_plane(uint term, uint route) {
+    return route == ROUTE_CAMERA ? term : route == ROUTE_REFLECTED ? FILM_REFLECTION : FILM_REFRACTION;
+}
+
+/// Adds radiance to the beauty, and to the plane it belongs to if that is kept.
 static inline void film_add_radiance(const Film* film, uint term, uint route, uint pixel, float3 radiance) {
-    const long r = film_units(film, radiance.x), g = film_units(film, radiance.y), b = film_units(film, radiance.z);
-    global long* beauty = film_pixel(film, FILM_BEAUTY, pixel);
-    film_add_units(film, beauty + 0, r);
-    film_add_units(film, beauty + 1, g);
-    film_add_units(film, beauty + 2, b);
-    const uint plane = route == ROUTE_CAMERA ? term : route == ROUTE_REFLECTED ? FILM_REFLECTION : FILM_REFRACTION;
-    if (!film_keeps(film, plane)) return;
-    global long* part = film_pixel(film, plane, pixel);
-    film_add_units(film, part + 0, r);
-    film_add_units(film, part + 1, g);
-    film_add_units(film, part + 2, b);
+    const long3 units = film_units3(film, radiance);
+    film_add_units3(film, FILM_BEAUTY, pixel, units);
+    const uint plane = film_plane(term, route);
+    if (film_keeps(film, plane)) film_add_units3(film, plane, pixel, units);
+}
+
+/// Adds the radiance of two terms. The beauty gets the sum of their integers, so that the planes still add up to it.
+static inline void film_add_two(const Film* film, uint route, uint pixel, uint first_term, float3 first,
+                                uint second_term, float3 second) {
+    const long3 a = film_units3(film, first), b = film_units3(film, second);
+    film_add_units3(film, FILM_BEAUTY, pixel, a + b);
+    const uint plane_a = film_plane(first_term, route), plane_b = film_plane(second_term, route);
+    if (film_keeps(film, plane_a)) film_add_units3(film, plane_a, pixel, a);
+    if (film_keeps(film, plane_b)) film_add_units3(film, plane_b, pixel, b);
 }
 
 #endif
