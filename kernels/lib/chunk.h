@@ -29,6 +29,7 @@ static inline void set_lane(float16* vectors, uint i, float value) { ((float*)ve
 
 /// Call for each i from 0 on, then chunk_prepare(). Nothing farther than t_max counts.
 static inline void chunk_add(RayChunk* c, uint i, global const float* origin, global const float* direction, float t_max) {
+#pragma unroll
     for (uint axis = 0; axis < 3; ++axis) {
         set_lane(c->origin[axis], i, origin[axis]);
         set_lane(c->direction[axis], i, direction[axis]);
@@ -70,6 +71,7 @@ static inline void prepare_triangle_frame(RayChunk* c, uint group) {
 static inline void chunk_prepare(RayChunk* c, uint count) {
     c->count = count;
     for (uint i = count; i < CHUNK; ++i) {
+#pragma unroll
         for (uint axis = 0; axis < 3; ++axis) {
             set_lane(c->origin[axis], i, get_lane(c->origin[axis], 0));
             set_lane(c->direction[axis], i, get_lane(c->direction[axis], 0));
@@ -78,6 +80,7 @@ static inline void chunk_prepare(RayChunk* c, uint count) {
     }
     for (uint group = 0; group < GROUPS; ++group) {
         prepare_triangle_frame(c, group);
+#pragma unroll
         for (uint axis = 0; axis < 3; ++axis) prepare_slabs(c, group, axis);
         c->best_u[group] = 0.0f;
         c->best_v[group] = 0.0f;
@@ -134,6 +137,7 @@ static inline Hit chunk_traverse_ray(const RayChunk* c, const Geometry* geometry
     slabs.inverse = (float3)(get_lane(c->inverse[0], i), get_lane(c->inverse[1], i), get_lane(c->inverse[2], i));
     slabs.near = (float3)(get_lane(c->near[0], i), get_lane(c->near[1], i), get_lane(c->near[2], i));
     slabs.far = (float3)(get_lane(c->far[0], i), get_lane(c->far[1], i), get_lane(c->far[2], i));
+#pragma unroll
     for (uint axis = 0; axis < 3; ++axis) slabs.sign[axis] = octant >> (OCTANT_SIGN + axis) & 1u;
     TriangleFrame frame = frame_axes(octant & OCTANT_AXIS, slabs.sign[octant & OCTANT_AXIS] != 0);
     frame.origin_x = get_lane(c->origin[frame.x], i);

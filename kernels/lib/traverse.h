@@ -111,16 +111,13 @@ static inline void visit_planes(const Geometry* geometry, Query* query) {
     }
 }
 
-/// Stack entries: the distance's bits above the child word. Distances are not negative, so integers sort like floats.
-/// The three lowest bits of the distance make way for the lane, which makes entries of a node differ; the distance only
-/// becomes a little smaller.
-static inline uint8 entry_keys(float8 entry) {
-    return (as_uint8(entry) & ~7u) | (uint8)(0, 1, 2, 3, 4, 5, 6, 7);
-}
-
-/// How many lanes have a larger key, lane by lane: the place, from the bottom, of each in the order of distance.
-static inline uint8 places_by_distance(uint8 key8) {
-    const int8 key = as_int8(key8);
+/// In the order of distance, farthest first, the places of those of eight lanes that are in the mask. keys: the bits of
+/// distances, which are not negative, so that integers sort like floats; the three lowest bits give way to the lane.
+static inline uint8 places_by_distance(uint8 keys, uint mask) {
+    const uint8 lane = (uint8)(0, 1, 2, 3, 4, 5, 6, 7);
+    // Lanes that are not in the mask count as nearer than any, so that their places come last.
+    const int8 is_out = ((uint8)(mask) >> lane & 1u) == 0u;
+    const int8 key = as_int8(keys & ~7u | lane) | is_out;
     int8 place = key.s12345670 > key;
     place += key.s23456701 > key;
     place += key.s34567012 > key;
@@ -131,14 +128,11 @@ static inline uint8 places_by_distance(uint8 key8) {
     return as_uint8(-place);
 }
 
-/// Pushes the children in `mask` so that the nearest is on top.
+/// Pushes the children in `mask` so that the nearest is on top. An entry is the distance's bits above the child word.
 static inline uint push_children(global const uint* children, uint mask, float8 entry, ulong* stack, uint top) {
     uint key[BVH_WIDTH], place[BVH_WIDTH];
-    // Lanes that are not in the mask are nearer than any, so that their places lie above the top.
-    const uint8 is_in = (uint8)(mask) & (uint8)(1, 2, 4, 8, 16, 32, 64, 128);
-    const uint8 key8 = entry_keys(entry);
-    *(uint8*)key = key8;
-    *(uint8*)place = places_by_distance(select(as_uint8((int8)(-1)), key8, is_in != 0));
+    *(uint8*)key = as_uint8(entry);
+    *(uint8*)place = places_by_distance(as_uint8(entry), mask);
     const uint count = popcount(mask);
     for (; mask != 0; mask &= mask - 1) {
         const uint lane = lowest_bit(mask);

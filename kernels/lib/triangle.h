@@ -91,6 +91,7 @@ static inline float8 enter_triangles(global const TriangleBlock* block, const Sl
     const float inverse[3] = {slabs->inverse.x, slabs->inverse.y, slabs->inverse.z};
     const float near[3] = {slabs->near.x, slabs->near.y, slabs->near.z};
     float8 enter = (float8)(0.0f);
+#pragma unroll
     for (uint axis = 0; axis < 3; ++axis) {
         const float8 a = fma(aligned8(p + axis * BVH_WIDTH), (float8)(inverse[axis]), (float8)(near[axis]));
         const float8 b = fma(aligned8(p + (3 + axis) * BVH_WIDTH), (float8)(inverse[axis]), (float8)(near[axis]));

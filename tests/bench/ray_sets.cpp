@@ -74,7 +74,8 @@ RaySet camera_rays(const Camera& camera, int width, int height) {
     RaySet set{"P", "camera rays", false, {}, {}};
     for (int tile = 0; tile < width / TILE * (height / TILE); ++tile)
         for (int i = 0; i < TILE * TILE; ++i) {
-            const int x = tile % (width / TILE) * TILE + i % TILE, y = tile / (width / TILE) * TILE + i / TILE;
+            const int in_x = (i & 1) | (i >> 1 & 2) | (i >> 2 & 4), in_y = (i >> 1 & 1) | (i >> 2 & 2) | (i >> 3 & 4);
+            const int x = tile % (width / TILE) * TILE + in_x, y = tile / (width / TILE) * TILE + in_y;
             const double sx = (2 * (x + 0.5) / width - 1) * half * aspect, sy = (1 - 2 * (y + 0.5) / height) * half;
             const glm::dvec3 direction = glm::normalize(forward + sx * right + sy * up);
             set.rays.push_back({glm::vec3(camera.eye), INFINITY, glm::vec3(direction)});
