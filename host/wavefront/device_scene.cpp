@@ -33,12 +33,20 @@ Buffer<T> upload(const Device& device, const std::vector<T>& values) {
     return Buffer<T>(device, std::span<const T>(values));
 }
 
+/// Of the hierarchy: a processor traverses it where it was built, in memory that it likes (bvh/large_array.hpp).
+template <class T>
+Buffer<T> share(const Device& device, const bvh::LargeArray<T>& values) {
+    if (device.info.type != "CPU" || values.empty()) return Buffer<T>(device, std::span<const T>(values));
+    // The kernels only read it.
+    return Buffer<T>::over(device, {const_cast<T*>(values.data()), values.size()});
+}
+
 }  // namespace
 
 DeviceScene::DeviceScene(const Device& device, const Scene& scene, const Bvh& bvh, const FilmPlanes& planes)
-    : nodes(upload(device, bvh.nodes)),
-      triangle_blocks(upload(device, bvh.triangle_blocks)),
-      sphere_blocks(upload(device, bvh.sphere_blocks)),
+    : nodes(share(device, bvh.nodes)),
+      triangle_blocks(share(device, bvh.triangle_blocks)),
+      sphere_blocks(share(device, bvh.sphere_blocks)),
       vertices(upload(device, scene.vertices)),
       triangles(upload(device, scene.triangles)),
       spheres(upload(device, scene.spheres)),

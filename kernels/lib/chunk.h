@@ -27,6 +27,22 @@ typedef struct {
 static inline float get_lane(const float16* vectors, uint i) { return ((const float*)vectors)[i]; }
 static inline void set_lane(float16* vectors, uint i, float value) { ((float*)vectors)[i] = value; }
 
+static inline uint get_octant(const RayChunk* c, uint i) { return ((const uint*)c->octant)[i]; }
+
+/// What ray i has found.
+static inline Hit chunk_hit(const RayChunk* c, uint i) {
+    const Hit hit = {get_lane(c->best_t, i), get_lane(c->best_u, i), get_lane(c->best_v, i),
+                     ((const uint*)c->best_primitive)[i]};
+    return hit;
+}
+
+static inline void chunk_set_hit(RayChunk* c, uint i, Hit hit) {
+    set_lane(c->best_t, i, hit.t);
+    set_lane(c->best_u, i, hit.u);
+    set_lane(c->best_v, i, hit.v);
+    ((uint*)c->best_primitive)[i] = hit.primitive;
+}
+
 /// Call for each i from 0 on, then chunk_prepare(). Nothing farther than t_max counts.
 static inline void chunk_add(RayChunk* c, uint i, global const float* origin, global const float* direction, float t_max) {
 #pragma unroll
@@ -34,7 +50,16 @@ static inline void chunk_add(RayChunk* c, uint i, global const float* origin, gl
         set_lane(c->origin[axis], i, origin[axis]);
         set_lane(c->direction[axis], i, direction[axis]);
     }
-    set_lane(c->best_t, i, t_max);
+    chunk_set_hit(c, i, no_hit(t_max));
+}
+
+/// Adds ray j of another chunk, with what it has found so far.
+static inline void chunk_copy(RayChunk* c, uint i, const RayChunk* from, uint j) {
+    for (uint axis = 0; axis < 3; ++axis) {
+        set_lane(c->origin[axis], i, get_lane(from->origin[axis], j));
+        set_lane(c->direction[axis], i, get_lane(from->direction[axis], j));
+    }
+    chunk_set_hit(c, i, chunk_hit(from, j));
 }
 
 /// slab_frame() of a group on one axis.
@@ -76,15 +101,12 @@ static inline void chunk_prepare(RayChunk* c, uint count) {
             set_lane(c->origin[axis], i, get_lane(c->origin[axis], 0));
             set_lane(c->direction[axis], i, get_lane(c->direction[axis], 0));
         }
-        set_lane(c->best_t, i, -1.0f);
+        chunk_set_hit(c, i, no_hit(-1.0f));
     }
     for (uint group = 0; group < GROUPS; ++group) {
         prepare_triangle_frame(c, group);
 #pragma unroll
         for (uint axis = 0; axis < 3; ++axis) prepare_slabs(c, group, axis);
-        c->best_u[group] = 0.0f;
-        c->best_v[group] = 0.0f;
-        c->best_primitive[group] = NO_INDEX;
     }
 }
 
@@ -109,23 +131,9 @@ static inline void chunk_visit_planes(RayChunk* c, const Geometry* geometry) {
     }
 }
 
-/// What ray i has found.
-static inline Hit chunk_hit(const RayChunk* c, uint i) {
-    const Hit hit = {get_lane(c->best_t, i), get_lane(c->best_u, i), get_lane(c->best_v, i),
-                     ((const uint*)c->best_primitive)[i]};
-    return hit;
-}
-
-static inline void chunk_set_hit(RayChunk* c, uint i, Hit hit) {
-    set_lane(c->best_t, i, hit.t);
-    set_lane(c->best_u, i, hit.u);
-    set_lane(c->best_v, i, hit.v);
-    ((uint*)c->best_primitive)[i] = hit.primitive;
-}
-
 /// Goes on with ray i alone, from its best hit so far.
 static inline Hit chunk_traverse_ray(const RayChunk* c, const Geometry* geometry, uint i, bool any_hit) {
-    const uint octant = ((const uint*)c->octant)[i];
+    const uint octant = get_octant(c, i);
     Query query;
     query.after.t = 0.0f;
     query.after.primitive = NO_INDEX;

@@ -42,8 +42,16 @@ static inline float16 max16(float16 a, float16 b) { return select(b, a, a > b); 
 /// Eight floats at a multiple of 32 bytes: one load, which vload8 is not.
 static inline float8 aligned8(global const float* p) { return *(global const float8*)p; }
 
+/// Asks for a cache line that will be read soon, where there is a way to.
+static inline void prefetch_line(global const void* address) {
+#ifdef __AVX__
+    __builtin_prefetch((const void*)(ulong)address);
+#endif
+}
+
 /// Index of the lowest bit set; mask must not be zero. Compilers know this as one instruction.
 static inline uint lowest_bit(uint mask) { return popcount(~mask & (mask - 1u)); }
+static inline uint lowest_bit64(ulong mask) { return (uint)popcount(~mask & (mask - 1ul)); }
 
 static inline float max3(float3 v) { return fmax(fmax(v.x, v.y), v.z); }
 

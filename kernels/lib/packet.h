@@ -15,6 +15,7 @@
 
 // Directions that differ by more than this on an axis share too few nodes to be worth it.
 #define COHERENT_SPREAD 0.5f
+#define FEWEST_TOGETHER 12  // rays
 
 /// Coherent rays: their largest axes and the signs of their directions are the same, which the arithmetic relies on.
 /// The rays of a group lie in a beam. Along their largest axis z its depth is (z - waist) * side, not negative where the
@@ -60,14 +61,17 @@ static inline bool any16(int16 comparison) {
     return (bytes.x | bytes.y) != 0;
 }
 
-/// Whether the rays share so much of the hierarchy that they are better traced together.
-static inline bool are_coherent(const RayChunk* c) {
-    if (c->count <= GROUP) return false;
-    const uint octant = c->octant[0].s0;
-    uint16 differing = (uint16)(0);
-    for (uint group = 0; group < GROUPS; ++group) differing |= c->octant[group] ^ octant;
-    if (any16(differing != 0)) return false;
+/// The rays of one octant, one bit each.
+static inline ulong rays_of_octant(const RayChunk* c, uint octant) {
+    ulong members = 0;
 #pragma unroll
+    for (uint group = 0; group < GROUPS; ++group)
+        members |= (ulong)lane_mask16(c->octant[group] == octant) << (GROUP * group);
+    return members;
+}
+
+/// Whether the rays, all of one octant, share so much of the hierarchy that they are better traced together.
+static inline bool are_close(const RayChunk* c) {
     for (uint axis = 0; axis < 3; ++axis) {
         float16 lower = c->direction[axis][0], upper = lower;
         for (uint group = 1; group < GROUPS; ++group) {
@@ -83,10 +87,15 @@ static inline void set_group(float16* pairs, uint group, float value) {
     ((float8*)pairs)[group] = (float8)(value);
 }
 
-static inline void update_farthest(Packet* p, uint group) {
-    set_group(p->farthest, group, max_lane(p->rays.best_t[group]));
-    const float16 both = max16(p->farthest[0], p->farthest[1]);
-    p->farthest_of_all = fmax(both.s0, both.s8);
+static inline void update_farthest(Packet* p) {
+    float farthest = -1.0f;
+#pragma unroll
+    for (uint group = 0; group < GROUPS; ++group) {
+        const float here = max_lane(p->rays.best_t[group]);
+        set_group(p->farthest, group, here);
+        farthest = here > farthest ? here : farthest;
+    }
+    p->farthest_of_all = farthest;
 }
 
 /// Where along z the first and the last ray reach a plane. A single ray's distances are up to 5 roundings of
@@ -195,8 +204,8 @@ static inline void packet_prepare(Packet* p) {
     for (uint group = 0; group < GROUPS; ++group) {
         prepare_depth(p, group);
         prepare_beam(p, group);
-        update_farthest(p, group);
     }
+    update_farthest(p);
 }
 
 /// Which of eight boxes some ray of each group may meet, bit 8 * group + box, and where the first ray can enter them.
@@ -395,7 +404,7 @@ static inline bool visit_sphere_group(Packet* p, global const SphereBlock* block
 
 /// Pushes the children that some group meets, the nearest on top. An entry is that of push_children() in traverse.h with
 /// the groups in the next four bits of the distance, which only makes it a little smaller.
-static inline uint push_groups(global const uint* children, uint mask, float8 entry, ulong* stack, uint top) {
+static inline uint push_groups(const Geometry* geometry, global const uint* children, uint mask, float8 entry, ulong* stack, uint top) {
     uint met = (mask | mask >> 16) & 0xffffu;
     met = (met | met >> 8) & 0xffu;
     if (met == 0) return top;
@@ -408,29 +417,27 @@ static inline uint push_groups(global const uint* children, uint mask, float8 en
         const uint lane = lowest_bit(met);
         const uint groups = groups_of_box(mask, lane);
         stack[top + place[lane]] = (ulong)(key[lane] | groups << ENTRY_GROUPS_SHIFT) << 32 | children[lane];
+        prefetch_child(geometry, children[lane]);
     }
     return top + count;
 }
 
 /// Tests each group's rays against those triangles of a block whose bounds some of them may meet.
-static inline void visit_triangles_groups(Packet* p, global const TriangleBlock* block, uint groups, bool any_hit) {
-    const uint meeting = groups_meeting_triangles(p, block) & spread_groups(groups);
-    for (uint group = 0; group < GROUPS; ++group) {
-        bool found = false;
-        for (uint mask = meeting >> BVH_WIDTH * group & 0xffu; mask != 0; mask &= mask - 1)
-            found |= visit_triangle_group(p, block, lowest_bit(mask), group, any_hit);
-        if (found) update_farthest(p, group);
+static inline bool visit_triangles_groups(Packet* p, global const TriangleBlock* block, uint groups, bool any_hit) {
+    bool found = false;
+    for (uint meeting = groups_meeting_triangles(p, block) & spread_groups(groups); meeting != 0; meeting &= meeting - 1) {
+        const uint bit = lowest_bit(meeting);
+        found |= visit_triangle_group(p, block, bit % BVH_WIDTH, bit / BVH_WIDTH, any_hit);
     }
+    return found;
 }
 
-static inline void visit_spheres_groups(Packet* p, global const SphereBlock* block, uint groups, bool any_hit) {
-    for (uint group = 0; group < GROUPS; ++group) {
-        if (!(groups >> group & 1u)) continue;
-        bool found = false;
-        for (uint lane = 0; lane < BVH_WIDTH && block->primitive[lane] != NO_INDEX; ++lane)
-            found |= visit_sphere_group(p, block, lane, group, any_hit);
-        if (found) update_farthest(p, group);
-    }
+static inline bool visit_spheres_groups(Packet* p, global const SphereBlock* block, uint groups, bool any_hit) {
+    bool found = false;
+    for (uint lane = 0; lane < BVH_WIDTH && block->primitive[lane] != NO_INDEX; ++lane)
+        for (uint group = 0; group < GROUPS; ++group)
+            if (groups >> group & 1u) found |= visit_sphere_group(p, block, lane, group, any_hit);
+    return found;
 }
 
 /// Finds the closest hit of every ray of a coherent packet among the primitives of the hierarchy, or with any_hit whether
@@ -455,34 +462,62 @@ static void traverse_packet(const Geometry* geometry, Packet* p, bool any_hit) {
                     if (!group_meets(p, node, bit % BVH_WIDTH, bit / BVH_WIDTH)) mask &= ~(1u << bit);
                 }
             }
-            top = push_groups(node->child, mask, entry, stack, top);
+            top = push_groups(geometry, node->child, mask, entry, stack, top);
             continue;
         }
         const uint first = child & CHILD_FIRST_MASK;
         const uint last = first + (child >> CHILD_BLOCKS_SHIFT & CHILD_BLOCKS_MASK);
+        bool found = false;
         for (uint block = first; block <= last; ++block)
-            if (child & CHILD_SPHERES)
-                visit_spheres_groups(p, geometry->spheres + block, groups, any_hit);
-            else
-                visit_triangles_groups(p, geometry->triangles + block, groups, any_hit);
+            found |= child & CHILD_SPHERES ? visit_spheres_groups(p, geometry->spheres + block, groups, any_hit)
+                                           : visit_triangles_groups(p, geometry->triangles + block, groups, any_hit);
+        if (found) update_farthest(p);
     }
 }
 
-/// Finds the closest hit of every ray of a chunk, or with any_hit whether there is one: together if they are coherent,
-/// else one by one.
-static inline void traverse_chunk(const Geometry* geometry, Packet* p, bool any_hit) {
+/// Traces rays of one octant: together if they are close, else one by one.
+static void traverse_octant(const Geometry* geometry, Packet* p, bool any_hit) {
     RayChunk* c = &p->rays;
-    chunk_visit_planes(c, geometry);
-    if (any_hit)
-        for (uint group = 0; group < GROUPS; ++group)
-            c->best_t[group] = select(c->best_t[group], (float16)(-1.0f), c->best_primitive[group] != NO_INDEX);
-    if (are_coherent(c)) {
+    if (c->count >= FEWEST_TOGETHER && are_close(c)) {
         packet_prepare(p);
         traverse_packet(geometry, p, any_hit);
         return;
     }
     for (uint i = 0; i < c->count; ++i)
         if (get_lane(c->best_t, i) >= 0.0f) chunk_set_hit(c, i, chunk_traverse_ray(c, geometry, i, any_hit));
+}
+
+/// Finds the closest hit of every ray of a chunk, or with any_hit whether there is one.
+static inline void traverse_chunk(const Geometry* geometry, Packet* p, bool any_hit) {
+    RayChunk* c = &p->rays;
+    chunk_visit_planes(c, geometry);
+    if (any_hit)
+        for (uint group = 0; group < GROUPS; ++group)
+            c->best_t[group] = select(c->best_t[group], (float16)(-1.0f), c->best_primitive[group] != NO_INDEX);
+    ulong waiting = c->count < CHUNK ? (1ul << c->count) - 1ul : ~0ul;
+    if ((waiting & ~rays_of_octant(c, c->octant[0].s0)) == 0) {
+        traverse_octant(geometry, p, any_hit);
+        return;
+    }
+    Packet part;
+    while (waiting != 0) {
+        const ulong members = waiting & rays_of_octant(c, get_octant(c, lowest_bit64(waiting)));
+        waiting &= ~members;
+        if (popcount(members) < FEWEST_TOGETHER) {
+            for (ulong rest = members; rest != 0; rest &= rest - 1) {
+                const uint i = lowest_bit64(rest);
+                if (get_lane(c->best_t, i) >= 0.0f) chunk_set_hit(c, i, chunk_traverse_ray(c, geometry, i, any_hit));
+            }
+            continue;
+        }
+        uint count = 0;
+        for (ulong rest = members; rest != 0; rest &= rest - 1) chunk_copy(&part.rays, count++, c, lowest_bit64(rest));
+        chunk_prepare(&part.rays, count);
+        traverse_octant(geometry, &part, any_hit);
+        count = 0;
+        for (ulong rest = members; rest != 0; rest &= rest - 1)
+            chunk_set_hit(c, lowest_bit64(rest), chunk_hit(&part.rays, count++));
+    }
 }
 
 #endif

@@ -47,6 +47,12 @@ static inline bool is_later(float t, uint primitive, float than_t, uint than_pri
     return t > than_t || (t == than_t && primitive > than_primitive);
 }
 
+/// Nothing hit up to t_max.
+static inline Hit no_hit(float t_max) {
+    const Hit hit = {t_max, 0.0f, 0.0f, NO_INDEX};
+    return hit;
+}
+
 /// A ray, and the hits to look for: later than `after` and not later than `best`, which is replaced.
 typedef struct {
     float3 origin;
@@ -128,8 +134,19 @@ static inline uint8 places_by_distance(uint8 keys, uint mask) {
     return as_uint8(-place);
 }
 
+/// Asks for the memory of a child that will be visited soon.
+static inline void prefetch_child(const Geometry* geometry, uint child) {
+    if (child & CHILD_LEAF) {
+        global const TriangleBlock* block = geometry->triangles + (child & CHILD_FIRST_MASK);
+        for (uint row = 0; row < 10; row += 2) prefetch_line(&block->position[0][0][0] + row * BVH_WIDTH);
+    } else {
+        global const BvhNode* node = geometry->nodes + child;
+        for (uint row = 0; row < 8; row += 2) prefetch_line(&node->bounds[0][0][0] + row * BVH_WIDTH);
+    }
+}
+
 /// Pushes the children in `mask` so that the nearest is on top. An entry is the distance's bits above the child word.
-static inline uint push_children(global const uint* children, uint mask, float8 entry, ulong* stack, uint top) {
+static inline uint push_children(const Geometry* geometry, global const uint* children, uint mask, float8 entry, ulong* stack, uint top) {
     uint key[BVH_WIDTH], place[BVH_WIDTH];
     *(uint8*)key = as_uint8(entry);
     *(uint8*)place = places_by_distance(as_uint8(entry), mask);
@@ -137,6 +154,7 @@ static inline uint push_children(global const uint* children, uint mask, float8 
     for (; mask != 0; mask &= mask - 1) {
         const uint lane = lowest_bit(mask);
         stack[top + place[lane]] = (ulong)key[lane] << 32 | children[lane];
+        prefetch_child(geometry, children[lane]);
     }
     return top + count;
 }
@@ -152,10 +170,11 @@ static void traverse(const Geometry* geometry, Query* query, const SlabFrame* sl
     for (;;) {
         if (!(child & CHILD_LEAF)) {
             global const BvhNode* node = geometry->nodes + child;
+            prefetch_line(node->child);  // in a cache line of its own, and needed last
             float8 entry;
             const uint mask = intersect_children(node, *slabs, query->best.t, &entry);
             if ((mask & (mask - 1)) != 0) {
-                top = push_children(node->child, mask, entry, stack, top);
+                top = push_children(geometry, node->child, mask, entry, stack, top);
             } else if (mask != 0) {
                 child = node->child[lowest_bit(mask)];
                 continue;
