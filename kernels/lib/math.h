@@ -132,16 +132,6 @@ static inline float angle_of(float y, float x) {
     return y < 0.0f ? -angle : angle;
 }
 
-/// Two unit vectors that make a right-handed basis with the unit vector n.
-/// Source: Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 2017.
-static inline void tangents(float3 n, float3* t, float3* u) {
-    const float sign = copysign(1.0f, n.z);
-    const float a = -1.0f / (sign + n.z);
-    const float b = n.x * n.y * a;
-    *t = (float3)(fma(sign * n.x * n.x, a, 1.0f), sign * b, -sign * n.x);
-    *u = (float3)(b, fma(n.y * n.y, a, sign), -n.y);
-}
-
 /// The unit square to the unit disk, area preserving.
 /// Source: Shirley and Chiu, "A Low Distortion Map Between Disk and Square", JGT 1997.
 static inline float2 concentric_disk(float2 square) {

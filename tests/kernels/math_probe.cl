@@ -1,4 +1,4 @@
-// The elementary functions of lib/math.h and lib/random.h, item by item.
+// The elementary functions of lib/math.h, lib/lanes.h and lib/random.h, item by item.
 
 #include "lib/sampling.h"
 
@@ -23,10 +23,11 @@ kernel void tangents_probe(global const uint* x, global const uint* y, global co
                            global uint* out) {
     const uint i = get_global_id(0);
     if (i >= items || selector != 0) return;
-    float3 t, u;
-    tangents((float3)(as_float(x[i]), as_float(y[i]), as_float(z[i])), &t, &u);
-    vstore4(as_uint4((float4)(t, 0.0f)), 2 * i, out);
-    vstore4(as_uint4((float4)(u, 0.0f)), 2 * i + 1, out);
+    const Lanes3 n = lanes_of((float3)(as_float(x[i]), as_float(y[i]), as_float(z[i])));
+    Lanes3 t, u;
+    lanes_tangents(n, &t, &u);
+    vstore4(as_uint4((float4)(t.x.s0, t.y.s0, t.z.s0, 0.0f)), 2 * i, out);
+    vstore4(as_uint4((float4)(u.x.s0, u.y.s0, u.z.s0, 0.0f)), 2 * i + 1, out);
 }
 
 /// Two words of output an item: stratified_point of (index, key).
