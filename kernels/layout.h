@@ -267,13 +267,10 @@ typedef struct {
     uint node_count;      // 0: nothing but planes
     uint shadows;
     uint robust_offset;   // 0: rays start exactly at the hit, to show the acne
-    uint spp;
-    uint seed;
     float min_weight;
     uint any_filter;      // some material transmits: a filtered shadow ray may pass through
     uint environment;     // index of the lat-long texture that rays see when they miss, or NO_INDEX
     float environment_scale[3];
-    uint slot_count;           // light samples of a hit, all lights together
     uint plane[FILM_PLANES];   // where each plane lies in the film, in planes; 0: not kept (but for the beauty)
     uint film_pixels;          // of a plane
 } SceneConstants;
@@ -294,7 +291,7 @@ RAYMILL_ASSERT_SIZE(LightRecord, 96);
 RAYMILL_ASSERT_SIZE(LightSlot, 8);
 RAYMILL_ASSERT_SIZE(CameraRecord, 92);
 RAYMILL_ASSERT_SIZE(Counters, 40);
-RAYMILL_ASSERT_SIZE(SceneConstants, 136);
+RAYMILL_ASSERT_SIZE(SceneConstants, 124);
 
 #ifndef __OPENCL_VERSION__
 }  // namespace raymill
