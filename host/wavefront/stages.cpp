@@ -39,7 +39,7 @@ Stages::Stages(const Device& device, std::size_t work_group, const std::string& 
     const auto stage = [&](const char* name, std::size_t group) {
         return Stage{name, make_kernel(program, name), work_group > 0 ? work_group : group};
     };
-    generate_ = stage("generate", item_group);
+    generate_ = stage("generate", chunk_group);
     intersect_ = stage("intersect", chunk_group);
     shade_ = stage("shade", chunk_group);
     features_ = stage("features", chunk_group);
@@ -66,7 +66,7 @@ void Stages::launch(Stage& stage, uint work_items, uint items, const Arguments&.
 }
 
 void Stages::generate(const DeviceScene& scene, std::uint64_t first_sample, uint count, Buffer<Ray>& rays) {
-    launch(generate_, count, count, first_sample, count, scene.camera, rays);
+    launch(generate_, chunks(count), count, first_sample, count, scene.camera, rays);
 }
 
 void Stages::intersect(const DeviceScene& scene, QueueRange<Ray> rays, Buffer<Hit>& hits, Film& film) {

@@ -36,6 +36,14 @@ static inline float3 lane_get(const float (*p)[LANES], uint lane) {
     return (float3)(p[0][lane], p[1][lane], p[2][lane]);
 }
 
+static inline Lanes3 lanes_minus(Lanes3 a) {
+    const Lanes3 r = {-a.x, -a.y, -a.z};
+    return r;
+}
+static inline Lanes3 lanes_add(Lanes3 a, Lanes3 b) {
+    const Lanes3 r = {a.x + b.x, a.y + b.y, a.z + b.z};
+    return r;
+}
 static inline Lanes3 lanes_sub(Lanes3 a, Lanes3 b) {
     const Lanes3 r = {a.x - b.x, a.y - b.y, a.z - b.z};
     return r;
@@ -70,10 +78,10 @@ static inline int16 lanes_any(Lanes3 v) { return (v.x != 0.0f) | (v.y != 0.0f) |
 /// max(x, 0); 0 for NaN.
 static inline float16 positive16(float16 x) { return select((float16)(0.0f), x, x > 0.0f); }
 
-/// (cos, sin) of turns * 2 pi, as cos_sin_turns().
+/// Cosine and sine of the angle `turns` * 2 pi, for turns in [0, 1]; absolute error below 2e-7.
 static inline void lanes_cos_sin(float16 turns, float16* cosine, float16* sine) {
     const int16 quarter = convert_int16(fma(turns, (float16)(4.0f), (float16)(0.5f)));  // not negative: truncation is floor
-    const float16 a = (turns - convert_float16(quarter) * 0.25f) * (2.0f * PI);
+    const float16 a = (turns - convert_float16(quarter) * 0.25f) * (2.0f * PI);  // [-pi/4, pi/4]
     const float16 a2 = a * a;
     float16 s = (float16)(1.0f / 362880.0f);
     s = fma(s, a2, (float16)(-1.0f / 5040.0f));
@@ -93,7 +101,8 @@ static inline void lanes_cos_sin(float16 turns, float16* cosine, float16* sine) 
     *sine = select(sin_size, -sin_size, q >= 2);
 }
 
-/// As concentric_disk().
+/// The unit square to the unit disk, area preserving.
+/// Source: Shirley and Chiu, "A Low Distortion Map Between Disk and Square", JGT 1997.
 static inline void lanes_disk(float16 square_x, float16 square_y, float16* disk_x, float16* disk_y) {
     const float16 a = fma(square_x, (float16)(2.0f), (float16)(-1.0f));
     const float16 b = fma(square_y, (float16)(2.0f), (float16)(-1.0f));

@@ -83,10 +83,9 @@ static inline void put_hit(HitLanes* hits, const World* world, const Shading* s)
 /// Unit vectors; l towards the light, v towards the eye.
 static inline void phong_terms(const HitLanes* hits, Lanes3 n, Lanes3 l, Lanes3 v, float16* diffuse, float16* specular) {
     const float16 cosine = lanes_dot(n, l);
-    const Lanes3 behind = {-l.x, -l.y, -l.z};
-    float16 highlight = lanes_dot(v, lanes_fma(2.0f * cosine, n, behind));
+    float16 highlight = lanes_dot(v, lanes_fma(2.0f * cosine, n, lanes_minus(l)));
     if (hits->any_blinn) {
-        const Lanes3 sum = {l.x + v.x, l.y + v.y, l.z + v.z};
+        const Lanes3 sum = lanes_add(l, v);
         const float16 length = lanes_length(sum);
         const float16 halfway = select((float16)(0.0f), lanes_dot(n, sum) / length, length > 0.0f);
         highlight = select(highlight, halfway, vload16(0, hits->blinn));

@@ -5,14 +5,7 @@
 #include "lib/lanes.h"
 #include "lib/random.h"
 
-/// Point `index` of the stratified points of [0, 1)^2 for one purpose (dimension) of one path.
-static inline float2 stratified_sample(uint index, uint path, uint dimension) {
-    uint x, y;
-    stratified_point(index, random_key(path, dimension), &x, &y);
-    return (float2)((float)x, (float)y) * 5.9604644775390625e-8f;  // 2^-24
-}
-
-/// The same for sixteen indices and paths.
+/// Point `index` of the stratified points of [0, 1)^2 for one purpose (dimension) of one path: sixteen of them.
 static inline void stratified_samples(const uint* index, const uint* path, uint dimension, float16* x, float16* y) {
     float xs[LANES], ys[LANES];
     // Nothing but integers and no branch: the compiler makes vectors of it.
@@ -22,7 +15,7 @@ static inline void stratified_samples(const uint* index, const uint* path, uint 
         xs[lane] = (float)(int)sample_x;
         ys[lane] = (float)(int)sample_y;
     }
-    *x = vload16(0, xs) * 5.9604644775390625e-8f;
+    *x = vload16(0, xs) * 5.9604644775390625e-8f;  // 2^-24
     *y = vload16(0, ys) * 5.9604644775390625e-8f;
 }
 

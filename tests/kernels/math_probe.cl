@@ -12,9 +12,16 @@ kernel void math_probe(global const uint* a, global const uint* b, uint items, u
     if (selector == 1) r.x = log2_exact(x);
     if (selector == 2) r.x = power(x, y);
     if (selector == 3) r.xyz = exp_minus((float3)(x, y, 0.0f));
-    if (selector == 4) r.xy = cos_sin_turns(x);
+    float16 first, second;
+    if (selector == 4) {
+        lanes_cos_sin((float16)(x), &first, &second);
+        r.xy = (float2)(first.s0, second.s0);
+    }
     if (selector == 5) r.x = angle_of(y, x);
-    if (selector == 6) r.xy = concentric_disk((float2)(x, y));
+    if (selector == 6) {
+        lanes_disk((float16)(x), (float16)(y), &first, &second);
+        r.xy = (float2)(first.s0, second.s0);
+    }
     vstore4(as_uint4(r), i, out);
 }
 
