@@ -251,8 +251,12 @@ typedef struct {
 /// What a wave tells the host, and what the film saw. 64-bit: added to by any number of work-items.
 typedef struct {
     ulong children;          // rays that `secondary` was asked to push in this wave
+    ulong parents;           // hits since the start that `secondary` found children of
     ulong shadow_rays;       // shadow rays that `shade` has pushed since the start
+    ulong shadow_traced;     // of these, how many `shadow` has taken
     ulong shadow_blocked;    // shadow rays that brought nothing
+    ulong missed;            // rays without a hit, where a frame is profiled
+    ulong passing;           // hits on surfaces that pass light on, where a frame is profiled
     ulong saturated;         // film contributions cut to FILM_LIMIT, or sums that overflowed
     ulong not_a_number;      // film contributions left out
 } Counters;
@@ -293,7 +297,7 @@ RAYMILL_ASSERT_SIZE(Texture, 12);
 RAYMILL_ASSERT_SIZE(LightRecord, 96);
 RAYMILL_ASSERT_SIZE(LightSlot, 8);
 RAYMILL_ASSERT_SIZE(CameraRecord, 92);
-RAYMILL_ASSERT_SIZE(Counters, 40);
+RAYMILL_ASSERT_SIZE(Counters, 72);
 RAYMILL_ASSERT_SIZE(SceneConstants, 136);
 
 #ifndef __OPENCL_VERSION__

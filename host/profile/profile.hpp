@@ -44,7 +44,7 @@ struct Fates {
     bool operator==(const Fates&) const = default;
 };
 
-/// One launch of a kernel. Times in nanoseconds since the run began, on the host's clock, as the device's events tell.
+/// One launch of a kernel. Times in nanoseconds of the host's steady clock, as the device's events tell.
 struct Launch {
     Stage stage = Stage::generate;
     int depth = no_depth;          // of the rays it works on
@@ -121,13 +121,17 @@ struct FilmAdds {
     std::uint64_t feature_ray = 0;  // ray, for those that count
 };
 
-/// Where the time of the loop went. kernels + launching + host = seconds.
+/// Where the time of the frame went. Measured apart from each other; the four parts add up to `seconds` but for the
+/// error with which the two clocks are compared.
 struct FrameTimes {
-    double seconds = 0;  // wall clock
-    double kernels = 0;  // the device ran a kernel
-    double launching =
-        0;            // it ran none though one was queued: launch latency, and compiling at a kernel's first launch
-    double host = 0;  // it ran none and none was queued: host code, reading counters and pictures
+    double seconds = 0;         // wall clock
+    double kernels = 0;         // the device ran a kernel
+    double first_launches = 0;  // it ran none, though one was queued that is the first of its stage in this frame:
+                                // compiling it, or loading it from the runtime's cache
+    double launching = 0;       // it ran none though one was queued: launch latency, clearing and reading counters
+    double host = 0;            // it ran none and none was queued: host code, reading the picture
+
+    double sum() const { return kernels + first_launches + launching + host; }
 };
 
 /// A profiled frame.
@@ -152,13 +156,17 @@ struct FrameProfile {
 /// Of one stage, all depths together; from the sizes in layout.h and the frame's counts.
 Traffic traffic(const FrameProfile& frame, Stage stage);
 
-/// A stretch of the host's time, in nanoseconds since the run began. Spans do not overlap.
+/// A stretch of the host's time, in nanoseconds of its steady clock. Spans do not overlap.
 struct Span {
     std::string name;
     std::int64_t start = 0;
     std::int64_t end = 0;
     double seconds() const { return 1e-9 * static_cast<double>(end - start); }
 };
+
+// Names of spans that have more to tell: see KernelCache and FrameTimes.
+inline constexpr std::string_view kernels_span = "build kernels";
+inline constexpr std::string_view render_span = "render";
 
 /// Compiled kernels that a run loaded.
 struct KernelCache {
@@ -183,7 +191,8 @@ struct RunProfile {
     std::vector<Span> spans;  // one after another: loading, building, rendering, writing ...
     KernelCache kernel_cache;
     FrameProfile frame;
-    double seconds = 0;  // wall clock of the run
+    std::int64_t start = 0;  // of the run, nanoseconds of the host's steady clock
+    double seconds = 0;      // wall clock of the run
 
     /// The part of `seconds` that no span covers.
     double unaccounted() const;
