@@ -44,8 +44,9 @@ Renderer::Renderer(const Device& device, const Scene& scene, const Bvh& bvh, con
       scene_(scene),
       planes_(options.planes),
       plan_(plan_memory(scene, bvh, planes_, options.memory, device.info)),
-      stages_(timeline_.measure(
-          std::string(profile::kernels_span), [&] { return Stages(device, options.work_group, options.kernel_dir, options.traversal); })),
+      stages_(
+          timeline_.measure(std::string(profile::kernels_span),
+                            [&] { return Stages(device, options.work_group, options.kernel_dir, options.traversal); })),
       device_scene_(timeline_.measure("upload scene", [&] { return DeviceScene(device, scene, bvh, planes_); })),
       max_depth_(plan_.queues - 1),
       waves_(plan_.queue_capacity, max_depth_),
