@@ -36,50 +36,65 @@ RTCIntersectContext context_for(bool coherent) {
     return context;
 }
 
+/// Packed once, and shared by every variant of the same call.
 template <class Call>
-Variant closest_variant(RTCScene scene, std::uint32_t sphere_offset, const RaySet& set, bool coherent) {
-    const auto rays = std::make_shared<const std::vector<typename Call::Rays>>(pack_rays<Call>(set.rays));
+using PackedRays = std::shared_ptr<const std::vector<typename Call::Rays>>;
+
+/// The hierarchy that variants trace in.
+struct Target {
+    RTCScene scene;
+    std::string suffix;  // of the variants' names
+    std::uint32_t sphere_offset;
+};
+
+template <class Call>
+Variant closest_variant(const Target& target, const PackedRays<Call>& rays, std::size_t count, bool coherent) {
     const auto hits = std::make_shared<std::vector<typename Call::Hits>>(rays->size());
     const auto trace = [=] {
         for_chunks(rays->size() * Call::width, [&](std::size_t first, std::size_t end) {
             RTCIntersectContext context = context_for(coherent);
-            Call::closest(scene, context, sphere_offset, rays->data() + first / Call::width,
+            Call::closest(target.scene, context, target.sphere_offset, rays->data() + first / Call::width,
                           (end - first) / Call::width, hits->data() + first / Call::width);
         });
     };
-    const auto found = [hits, count = set.rays.size()] {
+    const auto found = [hits, count] {
         std::vector<std::uint32_t> ids(count);
         for (std::size_t i = 0; i < count; ++i) ids[i] = (*hits)[i / Call::width].primitive[i % Call::width];
         return ids;
     };
-    return {Call::name(coherent), false, trace, found};
+    return {Call::name(coherent) + target.suffix, false, trace, found};
 }
 
 template <class Call>
-Variant any_variant(RTCScene scene, const RaySet& set, bool coherent) {
-    const auto rays = std::make_shared<const std::vector<typename Call::Rays>>(pack_rays<Call>(set.rays));
+Variant any_variant(const Target& target, const PackedRays<Call>& rays, std::size_t count, bool coherent) {
     const auto blocked = std::make_shared<std::vector<std::uint8_t>>(rays->size() * Call::width);
     const auto trace = [=] {
         for_chunks(rays->size() * Call::width, [&](std::size_t first, std::size_t end) {
             RTCIntersectContext context = context_for(coherent);
-            Call::any(scene, context, rays->data() + first / Call::width, (end - first) / Call::width,
+            Call::any(target.scene, context, rays->data() + first / Call::width, (end - first) / Call::width,
                       blocked->data() + first);
         });
     };
-    const auto found = [blocked, count = static_cast<std::ptrdiff_t>(set.rays.size())] {
-        return std::vector<std::uint32_t>(blocked->begin(), blocked->begin() + count);
+    const auto found = [blocked, count] {
+        return std::vector<std::uint32_t>(blocked->begin(), blocked->begin() + static_cast<std::ptrdiff_t>(count));
     };
-    return {Call::name(coherent), false, trace, found};
+    return {Call::name(coherent) + target.suffix, false, trace, found};
 }
 
 template <class Call>
-void add_variants(std::vector<Variant>& variants, RTCScene scene, std::uint32_t sphere_offset, const RaySet& set) {
-    for (const bool coherent : {true, false})
-        variants.push_back(set.any_hit ? any_variant<Call>(scene, set, coherent)
-                                       : closest_variant<Call>(scene, sphere_offset, set, coherent));
+void add_variants(std::vector<Variant>& variants, std::span<const Target> targets, const RaySet& set) {
+    const auto rays = std::make_shared<const std::vector<typename Call::Rays>>(pack_rays<Call>(set.rays));
+    for (const Target& target : targets)
+        for (const bool coherent : {true, false})
+            variants.push_back(set.any_hit ? any_variant<Call>(target, rays, set.rays.size(), coherent)
+                                           : closest_variant<Call>(target, rays, set.rays.size(), coherent));
 }
 
 }  // namespace
+
+const char* name_of(Quality quality) {
+    return quality == Quality::medium ? "medium" : "high";
+}
 
 EmbreeSide::EmbreeSide(const Scene& scene, unsigned threads, bool robust)
     : scene_(scene),
@@ -111,17 +126,19 @@ void EmbreeSide::attach_spheres(RTCScene scene) const {
     rtcAttachGeometryByID(scene, geometry.get(), spheres_id);
 }
 
-Build EmbreeSide::build() {
-    built_.reset();
+Build EmbreeSide::build(Quality quality) {
+    std::erase_if(built_, [&](const Hierarchy& h) { return h.quality == quality; });
     const std::ptrdiff_t before = bytes_;
     const auto start = std::chrono::steady_clock::now();
-    built_.reset(rtcNewScene(device_.get()));
-    rtcSetSceneFlags(built_.get(), robust_ ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
-    rtcSetSceneBuildQuality(built_.get(), RTC_BUILD_QUALITY_MEDIUM);
-    attach_triangles(built_.get());
-    attach_spheres(built_.get());
-    rtcCommitScene(built_.get());
+    Hierarchy made{quality, decltype(Hierarchy::scene)(rtcNewScene(device_.get()))};
+    RTCScene scene = made.scene.get();
+    rtcSetSceneFlags(scene, robust_ ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+    rtcSetSceneBuildQuality(scene, quality == Quality::medium ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_HIGH);
+    attach_triangles(scene);
+    attach_spheres(scene);
+    rtcCommitScene(scene);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    built_.push_back(std::move(made));
     return {took.count(), static_cast<std::size_t>(bytes_ - before)};
 }
 
@@ -132,7 +149,7 @@ std::vector<CameraHit> EmbreeSide::closest_hits(std::span<const BenchRay> rays) 
         RTCIntersectContext context = context_for(false);
         for (std::size_t i = first; i < end; ++i) {
             RTCRayHit query = query_of(ray_of(rays[i]));
-            rtcIntersect1(built_.get(), &context, &query);
+            rtcIntersect1(built_.front().scene.get(), &context, &query);
             hits[i] = {primitive_of(query.hit.geomID, query.hit.primID, sphere_offset), query.ray.tfar, query.hit.u,
                        query.hit.v};
         }
@@ -143,14 +160,18 @@ std::vector<CameraHit> EmbreeSide::closest_hits(std::span<const BenchRay> rays) 
 std::vector<Variant> EmbreeSide::variants(const RaySet& set) const {
     const auto has = [&](RTCDeviceProperty property) { return rtcGetDeviceProperty(device_.get(), property) != 0; };
     const auto sphere_offset = static_cast<std::uint32_t>(scene_.triangles.size());
+    std::vector<Target> targets;
+    for (const Hierarchy& h : built_)
+        targets.push_back({h.scene.get(), h.quality == Quality::medium ? "" : ", high", sphere_offset});
     std::vector<Variant> variants;
-    add_variants<SingleCall>(variants, built_.get(), sphere_offset, set);
-    if (has(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED))
-        add_variants<PacketCall8>(variants, built_.get(), sphere_offset, set);
-    if (has(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED))
-        add_variants<PacketCall16>(variants, built_.get(), sphere_offset, set);
-    if (has(RTC_DEVICE_PROPERTY_RAY_STREAM_SUPPORTED))
-        add_variants<StreamCall>(variants, built_.get(), sphere_offset, set);
+    add_variants<SingleCall>(variants, targets, set);
+    if (has(RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED)) add_variants<PacketCall4>(variants, targets, set);
+    if (has(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED)) add_variants<PacketCall8>(variants, targets, set);
+    if (has(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)) add_variants<PacketCall16>(variants, targets, set);
+    if (has(RTC_DEVICE_PROPERTY_RAY_STREAM_SUPPORTED)) {
+        add_variants<StreamCall>(variants, targets, set);
+        if (has(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)) add_variants<PacketStreamCall>(variants, targets, set);
+    }
     return variants;
 }
 

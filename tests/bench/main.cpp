@@ -26,7 +26,8 @@ struct Arguments {
     std::vector<double> eye, look_at;
     std::optional<double> fov;
     std::string size;
-    std::string traversal = "both";
+    std::string traversal = "all";
+    std::string quality = "both";
     std::string device;
     std::string json;
     bool list = false;
@@ -40,7 +41,7 @@ void add_options(CLI::App& app, Arguments& a) {
         ->check(CLI::IsMember(names));
     app.add_flag("--list", a.list, "Say what the scenes are");
     app.add_option("--triangles", a.triangles, "Triangles of each made scene, about")->check(CLI::Range(100.0, 5e7));
-    app.add_option("--mesh", a.mesh, "An OBJ model, or a scene file")->check(CLI::ExistingFile);
+    app.add_option("--mesh", a.mesh, "A model or a scene file")->check(CLI::ExistingFile);
     app.add_option("--eye", a.eye, "Camera of --mesh: x y z; without it the model is framed")->expected(3);
     app.add_option("--look-at", a.look_at, "What it looks at: x y z")->expected(3);
     app.add_option("--fov", a.fov, "Vertical field of view in degrees")->check(CLI::Range(1.0, 170.0));
@@ -49,7 +50,8 @@ void add_options(CLI::App& app, Arguments& a) {
         ->check(CLI::Range(1, 1000));
     app.add_option("--builds", a.measure.builds, "Times that each hierarchy is built")->check(CLI::Range(1, 100));
     app.add_option("--traversal", a.traversal, "Which of our kernels")
-        ->check(CLI::IsMember({"packet", "single", "both"}));
+        ->check(CLI::IsMember({"automatic", "packet", "single", "all"}));
+    app.add_option("--quality", a.quality, "Of Embree's hierarchy")->check(CLI::IsMember({"medium", "high", "both"}));
     app.add_option("--device", a.device, "OpenCL device: index or part of its name");
     app.add_option("--threads", a.measure.threads, "Of either side; 0 for all")->check(CLI::Range(0u, 1024u));
     app.add_flag("--robust", a.measure.robust, "Embree's watertight mode (ours always is)");
@@ -79,9 +81,16 @@ BenchScene load_mesh(const Arguments& a) {
 }
 
 std::vector<Traversal> traversals(const std::string& choice) {
+    if (choice == "automatic") return {Traversal::automatic};
     if (choice == "packet") return {Traversal::packet};
     if (choice == "single") return {Traversal::single};
-    return {Traversal::packet, Traversal::single};
+    return {Traversal::automatic, Traversal::packet, Traversal::single};
+}
+
+std::vector<Quality> qualities(const std::string& choice) {
+    if (choice == "medium") return {Quality::medium};
+    if (choice == "high") return {Quality::high};
+    return {Quality::medium, Quality::high};
 }
 
 bool is_wanted(const Arguments& a, const std::string& scene) {
@@ -132,6 +141,7 @@ int main(int argc, char** argv) {
             return 0;
         }
         parse_size(arguments.size, arguments.measure);
+        arguments.measure.qualities = qualities(arguments.quality);
         // As the program does: workers that stay where they are. It must be set before OpenCL is loaded.
         setenv("POCL_AFFINITY", "1", 0);
         std::optional<tbb::global_control> limit;

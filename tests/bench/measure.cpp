@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <thread>
 
 namespace raymill::bench {
@@ -86,10 +87,10 @@ SetResult measure_set(const RaySet& set, RaymillSide& ours, const EmbreeSide& em
     return result;
 }
 
-BuildResult build_result(const std::vector<Build>& builds, std::size_t primitives) {
+BuildResult build_result(const std::string& name, const std::vector<Build>& builds, std::size_t primitives) {
     std::vector<double> rates;
     for (const Build& build : builds) rates.push_back(static_cast<double>(primitives) * 1e-6 / build.seconds);
-    return {quartiles(rates), static_cast<double>(builds.back().bytes) / static_cast<double>(primitives)};
+    return {name, quartiles(rates), static_cast<double>(builds.back().bytes) / static_cast<double>(primitives)};
 }
 
 }  // namespace
@@ -101,19 +102,44 @@ double SceneResult::worst_difference() const {
     return worst;
 }
 
+std::vector<SetSummary> summarise(const std::vector<SceneResult>& scenes) {
+    std::vector<SetSummary> summaries;
+    std::vector<std::vector<double>> ratios;
+    for (const SceneResult& scene : scenes)
+        for (const SetResult& set : scene.sets)
+            for (const VariantResult& variant : set.variants) {
+                if (variant.name != AUTOMATIC) continue;
+                const auto found = std::ranges::find(summaries, set.name, &SetSummary::set);
+                const auto place = static_cast<std::size_t>(found - summaries.begin());
+                if (found == summaries.end()) {
+                    summaries.push_back({set.name, 0, INFINITY, {}});
+                    ratios.emplace_back();
+                }
+                ratios[place].push_back(variant.ratio.median);
+                if (variant.ratio.median >= summaries[place].worst) continue;
+                summaries[place].worst = variant.ratio.median;
+                summaries[place].worst_scene = scene.name;
+            }
+    for (std::size_t i = 0; i < summaries.size(); ++i) summaries[i].geometric_mean = geometric_mean(ratios[i]);
+    return summaries;
+}
+
 SceneResult measure(const BenchScene& bench, const RaymillKernels& kernels, const MeasureOptions& options) {
     const Scene& scene = bench.scene;
     RaymillHierarchy hierarchy(scene, options.threads);
     EmbreeSide embree(scene, options.threads, options.robust);
-    std::vector<Build> ours, theirs;
+    std::vector<Build> ours;
+    std::vector<std::vector<Build>> theirs(options.qualities.size());
     for (int i = 0; i < options.builds; ++i) {
         ours.push_back(hierarchy.build());
-        theirs.push_back(embree.build());
+        for (std::size_t q = 0; q < theirs.size(); ++q) theirs[q].push_back(embree.build(options.qualities[q]));
     }
-    SceneResult result{bench.name, scene.triangles.size(), scene.spheres.size(), {}, {}, {}, {}};
+    SceneResult result{bench.name, scene.triangles.size(), scene.spheres.size(), {}, {}, {}};
     const std::size_t primitives = result.triangles + result.spheres;
-    result.ours = build_result(ours, primitives);
-    result.embree = build_result(theirs, primitives);
+    result.builds.push_back(build_result("raymill", ours, primitives));
+    for (std::size_t q = 0; q < theirs.size(); ++q)
+        result.builds.push_back(
+            build_result(std::string("embree ") + name_of(options.qualities[q]), theirs[q], primitives));
     result.statistics = hierarchy.bvh().statistics;
 
     RaymillSide side(kernels, scene, hierarchy.bvh());

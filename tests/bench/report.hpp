@@ -21,7 +21,7 @@ struct Circumstances {
 void print_heading(const Circumstances& circumstances);
 void print_scene(const SceneResult& scene);
 
-/// One line a set: each of our variants' ratio to Embree's best, over all scenes.
+/// Our variants' ratio to Embree's best: a line a scene and set, then a line a set over all scenes.
 void print_summary(const std::vector<SceneResult>& scenes);
 
 /// Throws OutputError if the file cannot be written.
