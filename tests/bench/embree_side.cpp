@@ -11,9 +11,6 @@ namespace raymill::bench {
 
 namespace {
 
-constexpr unsigned triangles_id = 0;
-constexpr unsigned spheres_id = 1;
-
 bool count_bytes(void* bytes, std::ptrdiff_t more, bool) {
     *static_cast<std::atomic<std::ptrdiff_t>*>(bytes) += more;
     return true;
@@ -106,37 +103,39 @@ EmbreeSide::EmbreeSide(const Scene& scene, unsigned threads, bool robust)
     for (const Sphere& s : scene.spheres) spheres_.emplace_back(s.center[0], s.center[1], s.center[2], s.radius);
 }
 
-void EmbreeSide::attach_triangles(RTCScene scene) const {
+void EmbreeSide::attach_triangles(RTCScene scene, RTCFilterFunctionN occluded_filter) const {
     if (scene_.triangles.empty()) return;
     const Geometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
     rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, scene_.vertices.data(), 0,
                                sizeof(Vertex), scene_.vertices.size());
     rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, scene_.triangles.data(), 0,
                                sizeof(Triangle), scene_.triangles.size());
+    rtcSetGeometryOccludedFilterFunction(geometry.get(), occluded_filter);
     rtcCommitGeometry(geometry.get());
-    rtcAttachGeometryByID(scene, geometry.get(), triangles_id);
+    rtcAttachGeometryByID(scene, geometry.get(), EMBREE_TRIANGLES);
 }
 
-void EmbreeSide::attach_spheres(RTCScene scene) const {
+void EmbreeSide::attach_spheres(RTCScene scene, RTCFilterFunctionN occluded_filter) const {
     if (scene_.spheres.empty()) return;
     const Geometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_SPHERE_POINT));
     rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, spheres_.data(), 0,
                                sizeof(glm::vec4), spheres_.size());
+    rtcSetGeometryOccludedFilterFunction(geometry.get(), occluded_filter);
     rtcCommitGeometry(geometry.get());
-    rtcAttachGeometryByID(scene, geometry.get(), spheres_id);
+    rtcAttachGeometryByID(scene, geometry.get(), EMBREE_SPHERES);
 }
 
-Build EmbreeSide::build(Quality quality) {
+Build EmbreeSide::build(Quality quality, RTCFilterFunctionN occluded_filter) {
     std::erase_if(built_, [&](const Hierarchy& h) { return h.quality == quality; });
     const std::ptrdiff_t before = bytes_;
     const auto start = std::chrono::steady_clock::now();
     Hierarchy made{quality, decltype(Hierarchy::scene)(rtcNewScene(device_.get()))};
-    RTCScene scene = made.scene.get();
-    rtcSetSceneFlags(scene, robust_ ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
-    rtcSetSceneBuildQuality(scene, quality == Quality::medium ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_HIGH);
-    attach_triangles(scene);
-    attach_spheres(scene);
-    rtcCommitScene(scene);
+    rtcSetSceneFlags(made.scene.get(), robust_ ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+    rtcSetSceneBuildQuality(made.scene.get(),
+                            quality == Quality::medium ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_HIGH);
+    attach_triangles(made.scene.get(), occluded_filter);
+    attach_spheres(made.scene.get(), occluded_filter);
+    rtcCommitScene(made.scene.get());
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     built_.push_back(std::move(made));
     return {took.count(), static_cast<std::size_t>(bytes_ - before)};
@@ -149,7 +148,7 @@ std::vector<CameraHit> EmbreeSide::closest_hits(std::span<const BenchRay> rays) 
         RTCIntersectContext context = context_for(false);
         for (std::size_t i = first; i < end; ++i) {
             RTCRayHit query = query_of(ray_of(rays[i]));
-            rtcIntersect1(built_.front().scene.get(), &context, &query);
+            rtcIntersect1(scene(), &context, &query);
             hits[i] = {primitive_of(query.hit.geomID, query.hit.primID, sphere_offset), query.ray.tfar, query.hit.u,
                        query.hit.v};
         }

@@ -17,14 +17,22 @@ namespace raymill::bench {
 enum class Quality { medium, high };
 const char* name_of(Quality quality);
 
+// Ids of Embree's geometries; primitives in them count as in the scene.
+inline constexpr unsigned EMBREE_TRIANGLES = 0;
+inline constexpr unsigned EMBREE_SPHERES = 1;
+
 /// Shares the scene's arrays of triangles: it must outlive this.
 class EmbreeSide {
   public:
     /// threads: of its builder; 0 for all. robust: its watertight mode, which ours always is.
     EmbreeSide(const Scene& scene, unsigned threads, bool robust);
 
-    /// Builds a hierarchy of this quality afresh, and keeps it beside those of other qualities.
-    Build build(Quality quality);
+    /// Builds a hierarchy of this quality afresh, and keeps it beside those of other qualities. occluded_filter: called
+    /// where occlusion rays hit anything.
+    Build build(Quality quality, RTCFilterFunctionN occluded_filter = nullptr);
+
+    /// The first hierarchy that was built.
+    RTCScene scene() const { return built_.front().scene.get(); }
 
     /// Closest hits of `rays`, one by one, by the first hierarchy that was built.
     std::vector<CameraHit> closest_hits(std::span<const BenchRay> rays) const;
@@ -48,8 +56,8 @@ class EmbreeSide {
         std::unique_ptr<RTCSceneTy, ReleaseScene> scene;
     };
 
-    void attach_triangles(RTCScene scene) const;
-    void attach_spheres(RTCScene scene) const;
+    void attach_triangles(RTCScene scene, RTCFilterFunctionN occluded_filter) const;
+    void attach_spheres(RTCScene scene, RTCFilterFunctionN occluded_filter) const;
 
     const Scene& scene_;
     std::vector<glm::vec4> spheres_;  // Embree loads sixteen aligned bytes a sphere: ours do not do

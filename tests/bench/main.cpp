@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 #include <optional>
 
 #include "report.hpp"
@@ -34,6 +35,8 @@ struct Arguments {
     MeasureOptions measure;
 };
 
+const std::map<std::string, Clock> clocks = {{"wall", Clock::wall}, {"processor", Clock::processor}};
+
 void add_options(CLI::App& app, Arguments& a) {
     std::vector<std::string> names;
     for (const Recipe& recipe : recipes()) names.push_back(recipe.name);
@@ -54,6 +57,8 @@ void add_options(CLI::App& app, Arguments& a) {
     app.add_option("--quality", a.quality, "Of Embree's hierarchy")->check(CLI::IsMember({"medium", "high", "both"}));
     app.add_option("--device", a.device, "OpenCL device: index or part of its name");
     app.add_option("--threads", a.measure.threads, "Of either side; 0 for all")->check(CLI::Range(0u, 1024u));
+    app.add_option("--clock", a.measure.clock, "wall, or processor: time of all threads, for a busy machine")
+        ->transform(CLI::CheckedTransformer(clocks));
     app.add_flag("--robust", a.measure.robust, "Embree's watertight mode (ours always is)");
     app.add_option("--json", a.json, "Write the numbers to this file as well");
 }

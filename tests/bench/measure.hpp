@@ -7,6 +7,7 @@
 #include "embree_side.hpp"
 #include "raymill_side.hpp"
 #include "statistics.hpp"
+#include "stopwatch.hpp"
 
 namespace raymill::bench {
 
@@ -55,7 +56,8 @@ struct MeasureOptions {
     int height = 768;
     int rounds = 11;
     int builds = 3;
-    unsigned threads = 0;                                               // 0: all
+    unsigned threads = 0;  // 0: all
+    Clock clock = Clock::wall;
     bool robust = false;                                                // Embree's watertight mode
     std::vector<Quality> qualities = {Quality::medium, Quality::high};  // of Embree's hierarchies, at least one
 };
@@ -73,7 +75,7 @@ struct SetSummary {
 std::vector<SetSummary> summarise(const std::vector<SceneResult>& scenes);
 
 /// Builds all hierarchies `builds` times in turn, then measures each set of rays: one trace of every variant to
-/// compare the results, and `rounds` rounds in which each variant runs once, by the wall clock.
+/// compare the results, and `rounds` rounds in which each variant runs once.
 SceneResult measure(const BenchScene& bench, const RaymillKernels& kernels, const MeasureOptions& options);
 
 }  // namespace raymill::bench

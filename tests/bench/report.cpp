@@ -117,6 +117,7 @@ void write_json(const std::string& file, const Circumstances& c, const std::vect
                 {"rounds", c.options.rounds},
                 {"builds", c.options.builds},
                 {"threads", c.options.threads},
+                {"clock", c.options.clock == Clock::wall ? "wall" : "processor"},
                 {"summary", Json::array()},
                 {"scenes", Json::array()}};
     for (const SetSummary& set : summarise(scenes)) all["summary"].push_back(json_of(set));
