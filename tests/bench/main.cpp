@@ -22,7 +22,8 @@ constexpr int bad_input = 2;
 
 struct Arguments {
     std::vector<std::string> scenes;
-    double triangles = 1e6;
+    std::optional<double> triangles;  // 1e6, or 1e7 for scaling
+    bool scaling = false;
     std::string mesh;
     std::vector<double> eye, look_at;
     std::optional<double> fov;
@@ -43,8 +44,12 @@ void add_options(CLI::App& app, Arguments& a) {
     app.add_option("--scene", a.scenes, "Scenes that the program makes; all of them without this and --mesh")
         ->check(CLI::IsMember(names));
     app.add_flag("--list", a.list, "Say what the scenes are");
-    app.add_option("--triangles", a.triangles, "Triangles of each made scene, about")->check(CLI::Range(100.0, 5e7));
-    app.add_option("--mesh", a.mesh, "A model or a scene file")->check(CLI::ExistingFile);
+    app.add_option("--triangles", a.triangles,
+                   "Triangles of each made scene, about (default 1e6); the largest for --scaling (default 1e7)")
+        ->check(CLI::Range(100.0, 5e7));
+    app.add_flag("--scaling", a.scaling,
+                 "Instead: how the time of a ray grows with the made scenes, threads, queues and images")
+        ->excludes(app.add_option("--mesh", a.mesh, "A model or a scene file")->check(CLI::ExistingFile));
     app.add_option("--eye", a.eye, "Camera of --mesh: x y z; without it the model is framed")->expected(3);
     app.add_option("--look-at", a.look_at, "What it looks at: x y z")->expected(3);
     app.add_option("--fov", a.fov, "Vertical field of view in degrees")->check(CLI::Range(1.0, 170.0));
@@ -103,11 +108,29 @@ bool is_wanted(const Arguments& a, const std::string& scene) {
     return std::find(a.scenes.begin(), a.scenes.end(), scene) != a.scenes.end();
 }
 
+Circumstances circumstances_of(const Arguments& a, const DeviceInfo& device) {
+    return {device.name, device.driver, device.compute_units, RTC_VERSION_STRING, a.measure};
+}
+
+void run_scaling(const Arguments& a) {
+    const double largest = a.triangles.value_or(1e7);
+    if (largest < 1e4) throw UsageError("--scaling: give at least 10000 --triangles");
+    std::vector<ScalingTable> tables;
+    for (const Recipe& recipe : recipes())
+        if (is_wanted(a, recipe.name))
+            measure_scaling(recipe, {a.measure, a.device, largest}, [&](const ScalingTable& table) {
+                tables.push_back(table);
+                print_scaling(table);
+                std::fflush(stdout);
+            });
+    if (!a.json.empty())
+        write_json(a.json, circumstances_of(a, open_device(a.device, a.measure.threads).info), {}, tables);
+}
+
 /// Whether both sides agreed everywhere.
 bool run(const Arguments& a) {
     const RaymillKernels kernels(a.device, a.measure.threads, traversals(a.traversal));
-    const DeviceInfo& device = kernels.device().info;
-    const Circumstances circumstances{device.name, device.driver, device.compute_units, RTC_VERSION_STRING, a.measure};
+    const Circumstances circumstances = circumstances_of(a, kernels.device().info);
     print_heading(circumstances);
     std::vector<SceneResult> results;
     bool agreed = true;
@@ -121,10 +144,10 @@ bool run(const Arguments& a) {
                    bench.name, results.back().worst_difference(), ALLOWED_DIFFERENCE);
     };
     for (const Recipe& recipe : recipes())
-        if (is_wanted(a, recipe.name)) add(recipe.make(a.triangles));
+        if (is_wanted(a, recipe.name)) add(recipe.make(a.triangles.value_or(1e6)));
     if (!a.mesh.empty()) add(load_mesh(a));
     print_summary(results);
-    if (!a.json.empty()) write_json(a.json, circumstances, results);
+    if (!a.json.empty()) write_json(a.json, circumstances, results, {});
     return agreed;
 }
 
@@ -152,6 +175,10 @@ int main(int argc, char** argv) {
         std::optional<tbb::global_control> limit;
         if (arguments.measure.threads > 0)
             limit.emplace(tbb::global_control::max_allowed_parallelism, arguments.measure.threads);
+        if (arguments.scaling) {
+            run_scaling(arguments);
+            return 0;
+        }
         return run(arguments) ? 0 : failed;
     } catch (const CLI::Success& success) {
         return app.exit(success);

@@ -58,6 +58,16 @@ Json json_of(const SetSummary& summary) {
             {"worst_scene", summary.worst_scene}};
 }
 
+Json json_of(const ScalingTable& table) {
+    Json rows = Json::array();
+    for (const ScalingRow& row : table.rows)
+        rows.push_back({{"name", row.name},
+                        {"nanoseconds", row.nanoseconds},
+                        {table.factor, row.factor},
+                        {"keeps_limit", table.keeps_limit(row)}});
+    return {{"title", table.title}, {"columns", table.columns}, {"limit", table.limit}, {"rows", rows}};
+}
+
 void print_build(const BuildResult& build) {
     fmt::print("  build {:<13} {:7.2f} M/s [{:.2f} {:.2f}]  {:6.1f} bytes a primitive\n", build.name,
                build.mprimitives.median, build.mprimitives.lower, build.mprimitives.upper, build.bytes_a_primitive);
@@ -91,6 +101,18 @@ void print_scene(const SceneResult& scene) {
     }
 }
 
+void print_scaling(const ScalingTable& table) {
+    fmt::print("\n{}, ns; {} {} {}\n  {:<6}", table.title, table.factor, table.at_least ? "at least" : "at most",
+               table.limit, "");
+    for (const std::string& column : table.columns) fmt::print("{:>10}", column);
+    fmt::print("{:>10}\n", table.factor);
+    for (const ScalingRow& row : table.rows) {
+        fmt::print("  {:<6}", row.name);
+        for (const double time : row.nanoseconds) fmt::print("{:>10.1f}", time);
+        fmt::print("{:>10.2f}{}\n", row.factor, table.keeps_limit(row) ? "" : "  <-");
+    }
+}
+
 void print_summary(const std::vector<SceneResult>& scenes) {
     fmt::print("\nratio to Embree's best\n");
     for (const SceneResult& scene : scenes)
@@ -106,7 +128,8 @@ void print_summary(const std::vector<SceneResult>& scenes) {
                    set.worst_scene);
 }
 
-void write_json(const std::string& file, const Circumstances& c, const std::vector<SceneResult>& scenes) {
+void write_json(const std::string& file, const Circumstances& c, const std::vector<SceneResult>& scenes,
+                const std::vector<ScalingTable>& scaling) {
     Json all = {{"device", c.device},
                 {"driver", c.driver},
                 {"compute_units", c.compute_units},
@@ -119,9 +142,11 @@ void write_json(const std::string& file, const Circumstances& c, const std::vect
                 {"threads", c.options.threads},
                 {"clock", c.options.clock == Clock::wall ? "wall" : "processor"},
                 {"summary", Json::array()},
-                {"scenes", Json::array()}};
+                {"scenes", Json::array()},
+                {"scaling", Json::array()}};
     for (const SetSummary& set : summarise(scenes)) all["summary"].push_back(json_of(set));
     for (const SceneResult& scene : scenes) all["scenes"].push_back(json_of(scene));
+    for (const ScalingTable& table : scaling) all["scaling"].push_back(json_of(table));
     std::ofstream out(file);
     out << all.dump(2) << '\n';
     out.close();
