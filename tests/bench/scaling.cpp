@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <memory>
+#include <optional>
 #include <span>
 #include <thread>
 
@@ -19,17 +20,16 @@ constexpr double usual_scene = 1e6;
 constexpr int smallest_queue_bits = 10;
 constexpr int smallest_image_bits = 6;
 
-struct Sets {
-    explicit Sets(const BenchScene& bench, const MeasureOptions& options) {
-        EmbreeSide embree(bench.scene, options.threads, false);
-        embree.build(Quality::medium);
-        const RaySet camera = camera_rays(bench.scene.camera, options.width, options.height);
-        all = bounced_rays(bench, camera, embree.closest_hits(camera.rays));
-        all.insert(all.begin(), camera);
-        std::erase_if(all, [](const RaySet& set) { return set.rays.empty(); });
-    }
-    std::vector<RaySet> all;
-};
+/// All sets of rays that are not empty.
+std::vector<RaySet> ray_sets(const BenchScene& bench, const MeasureOptions& options) {
+    EmbreeSide embree(bench.scene, options.threads, false);
+    embree.build(Quality::medium);
+    const RaySet camera = camera_rays(bench.scene.camera, options.width, options.height);
+    std::vector<RaySet> sets = bounced_rays(bench, camera, embree.closest_hits(camera.rays));
+    sets.insert(sets.begin(), camera);
+    std::erase_if(sets, [](const RaySet& set) { return set.rays.empty(); });
+    return sets;
+}
 
 /// A thing to be timed, and the rays that it traces.
 struct Work {
@@ -54,22 +54,45 @@ std::string count_name(double count) {
     return fmt::format("{:g}k", count / 1e3);
 }
 
+Work trace_of(RaymillSide& side, const RaySet& set) {
+    return {side.variants(set).front().trace, static_cast<double>(set.rays.size())};
+}
+
+/// A made scene, ready to be traced.
+struct PreparedScene {
+    PreparedScene(BenchScene made, const RaymillKernels& kernels, const MeasureOptions& options)
+        : bench(std::move(made)), sets(ray_sets(bench, options)) {
+        RaymillHierarchy hierarchy(bench.scene, options.threads);
+        hierarchy.build();
+        side.emplace(kernels, bench.scene, hierarchy.bvh());
+    }
+    /// Nothing where no ray is in the set.
+    std::optional<Work> trace(const std::string& name) {
+        const auto set = std::ranges::find(sets, name, &RaySet::name);
+        return set == sets.end() ? std::nullopt : std::optional(trace_of(*side, *set));
+    }
+
+    BenchScene bench;
+    std::vector<RaySet> sets;
+    std::optional<RaymillSide> side;
+};
+
 ScalingTable by_scene(const Recipe& recipe, const ScalingOptions& options) {
     ScalingTable table{recipe.name + ": a ray by triangles", {}, "growth", LARGEST_GROWTH, false, {}};
     const RaymillKernels kernels(options.device, options.measure.threads, {Traversal::automatic});
+    std::vector<std::unique_ptr<PreparedScene>> scenes;
     for (double triangles = smallest_scene; triangles <= options.largest; triangles *= 10) {
-        const BenchScene bench = recipe.make(triangles);
         table.columns.push_back(count_name(triangles));
-        RaymillHierarchy hierarchy(bench.scene, options.measure.threads);
-        hierarchy.build();
-        RaymillSide side(kernels, bench.scene, hierarchy.bvh());
-        for (const RaySet& set : Sets(bench, options.measure).all) {
-            const Work work{side.variants(set).front().trace, static_cast<double>(set.rays.size())};
-            auto row = std::ranges::find(table.rows, set.name, &ScalingRow::name);
-            if (row == table.rows.end()) row = table.rows.insert(row, {set.name, {}, 1});
-            row->nanoseconds.push_back(time_in_turn({work}, options.measure.rounds, options.measure.clock).front());
-            row->factor = row->nanoseconds.back() / row->nanoseconds.front();
-        }
+        scenes.push_back(std::make_unique<PreparedScene>(recipe.make(triangles), kernels, options.measure));
+    }
+    for (const RaySet& set : scenes.front()->sets) {
+        std::vector<Work> works;
+        for (const auto& scene : scenes)
+            if (const auto work = scene->trace(set.name)) works.push_back(*work);
+        if (works.size() < scenes.size()) continue;
+        ScalingRow row{set.name, time_in_turn(works, options.measure.rounds, options.measure.clock), 1};
+        row.factor = row.nanoseconds.back() / row.nanoseconds.front();
+        table.rows.push_back(row);
     }
     return table;
 }
@@ -89,10 +112,9 @@ ScalingTable by_threads(const Recipe& recipe, const ScalingOptions& options, con
         kernels.push_back(std::make_unique<RaymillKernels>(options.device, threads, std::vector{Traversal::automatic}));
         sides.push_back(std::make_unique<RaymillSide>(*kernels.back(), bench.scene, hierarchy.bvh()));
     }
-    for (const RaySet& set : Sets(bench, options.measure).all) {
+    for (const RaySet& set : ray_sets(bench, options.measure)) {
         std::vector<Work> works;
-        for (const auto& side : sides)
-            works.push_back({side->variants(set).front().trace, static_cast<double>(set.rays.size())});
+        for (const auto& side : sides) works.push_back(trace_of(*side, set));
         ScalingRow row{set.name, time_in_turn(works, options.measure.rounds, Clock::wall), 1};
         row.factor = row.nanoseconds.front() / row.nanoseconds.back();
         table.rows.push_back(row);

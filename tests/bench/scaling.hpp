@@ -42,7 +42,8 @@ struct ScalingOptions {
 };
 
 /// Answers all questions for one made scene, each table handed over as soon as it is there:
-///   scene    10k triangles, ten times as many, ... up to the largest; our automatic choice, each set of rays
+///   scene    10k triangles, ten times as many, ... up to the largest; our automatic choice, each set of rays;
+///            all scenes are held at once, to be traced in turn
 ///   threads  1, 2, 4 ... up to all, by the wall clock; not where there is but one
 ///   queue    frames of one light and one reflection, queue capacities 2^k - 1, 2^k, 2^k + 1, and the default
 ///   image    the same frames, square, as wide, up to twice the measured image
