@@ -4,8 +4,9 @@
 
 #include "lib/sampling.h"
 
-/// A place in the order of camera samples: tiles of TILE x TILE pixels row by row, in a tile all pixels of one sample after
-/// the other, so that 64 rays in a row are neighbours. Tiles at the right and bottom edge are smaller; none is padded.
+/// A place in the order of camera samples: tiles of TILE x TILE pixels row by row, in a tile all pixels of one sample
+/// after the other, so that 64 rays in a row are neighbours. Tiles at the right and bottom edge are smaller; none is
+/// padded.
 typedef struct {
     uint tile_x, tile_y;  // first pixel of the tile, in the rendered window
     uint columns, rows;   // of the tile
@@ -77,7 +78,8 @@ static inline void camera_rays(constant CameraRecord* camera, const CameraSample
                                Lanes3* direction) {
     float16 jitter_x = (float16)(0.5f), jitter_y = (float16)(0.5f);
     if (camera->spp != 1) stratified_samples(s->sample, s->path, RANDOM_PIXEL, &jitter_x, &jitter_y);
-    const float16 column = convert_float16(as_int16(vload16(0, s->x))), row = convert_float16(as_int16(vload16(0, s->y)));
+    const float16 column = convert_float16(as_int16(vload16(0, s->x))),
+                  row = convert_float16(as_int16(vload16(0, s->y)));
     const float16 x = fma((column + jitter_x) / (float)camera->width, (float16)(2.0f), (float16)(-1.0f));
     const float16 y = fma((row + jitter_y) / (float)camera->height, (float16)(-2.0f), (float16)(1.0f));
     const float3 right = constant3(camera->right), up = constant3(camera->up);

@@ -70,17 +70,28 @@ static inline Lanes3 lanes_select(Lanes3 a, Lanes3 b, int16 where) {
     const Lanes3 r = {select(a.x, b.x, where), select(a.y, b.y, where), select(a.z, b.z, where)};
     return r;
 }
-static inline float16 lanes_dot(Lanes3 a, Lanes3 b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
-static inline float16 lanes_length(Lanes3 v) { return sqrt(lanes_dot(v, v)); }
-static inline Lanes3 lanes_unit(Lanes3 v) { return lanes_div(v, lanes_length(v)); }
-static inline int16 lanes_any(Lanes3 v) { return (v.x != 0.0f) | (v.y != 0.0f) | (v.z != 0.0f); }
+static inline float16 lanes_dot(Lanes3 a, Lanes3 b) {
+    return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z));
+}
+static inline float16 lanes_length(Lanes3 v) {
+    return sqrt(lanes_dot(v, v));
+}
+static inline Lanes3 lanes_unit(Lanes3 v) {
+    return lanes_div(v, lanes_length(v));
+}
+static inline int16 lanes_any(Lanes3 v) {
+    return (v.x != 0.0f) | (v.y != 0.0f) | (v.z != 0.0f);
+}
 
 /// max(x, 0); 0 for NaN.
-static inline float16 positive16(float16 x) { return select((float16)(0.0f), x, x > 0.0f); }
+static inline float16 positive16(float16 x) {
+    return select((float16)(0.0f), x, x > 0.0f);
+}
 
 /// Cosine and sine of the angle `turns` * 2 pi, for turns in [0, 1]; absolute error below 2e-7.
 static inline void lanes_cos_sin(float16 turns, float16* cosine, float16* sine) {
-    const int16 quarter = convert_int16(fma(turns, (float16)(4.0f), (float16)(0.5f)));  // not negative: truncation is floor
+    const int16 quarter =
+        convert_int16(fma(turns, (float16)(4.0f), (float16)(0.5f)));             // not negative: truncation is floor
     const float16 a = (turns - convert_float16(quarter) * 0.25f) * (2.0f * PI);  // [-pi/4, pi/4]
     const float16 a2 = a * a;
     float16 s = (float16)(1.0f / 362880.0f);

@@ -67,8 +67,8 @@ static inline LightSample from_sphere(global const LightRecord* light, Lanes3 p,
     const Lanes3 across = lanes_fma(around_y * sine, u, lanes_scale(axis, cosine));
     const int16 outside = d2 > r2;
     LightSample s;
-    s.direction = lanes_select(lanes_of((float3)(0.0f, 1.0f, 0.0f)), lanes_unit(lanes_fma(around_x * sine, t, across)),
-                               outside);
+    s.direction =
+        lanes_select(lanes_of((float3)(0.0f, 1.0f, 0.0f)), lanes_unit(lanes_fma(around_x * sine, t, across)), outside);
     s.distance = select((float16)(0.0f), d * cosine - sqrt(positive16(r2 - d2 * sin2)), outside);
     const Lanes3 incoming = lanes_scale(lanes_of(load3(light->intensity)), 2.0f * cap / (float)light->samples);
     s.incoming = lanes_select(lanes_of((float3)(0.0f)), incoming, outside);

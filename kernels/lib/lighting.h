@@ -21,7 +21,7 @@ typedef struct {
     float geometric_normal[3][LANES];
     float shading_normal[3][LANES];
     float to_eye[3][LANES];
-    float start[3][LANES];  // of shadow rays
+    float start[3][LANES];     // of shadow rays
     float diffuse[3][LANES];   // k_d
     float specular[3][LANES];  // k_s
     float weight[3][LANES];    // of both terms
@@ -81,7 +81,8 @@ static inline void put_hit(HitLanes* hits, const World* world, const Shading* s)
 
 /// max(n.l, 0) and the highlight's cosine to the power of the shininess, both 0 where the light is behind the normal.
 /// Unit vectors; l towards the light, v towards the eye.
-static inline void phong_terms(const HitLanes* hits, Lanes3 n, Lanes3 l, Lanes3 v, float16* diffuse, float16* specular) {
+static inline void phong_terms(const HitLanes* hits, Lanes3 n, Lanes3 l, Lanes3 v, float16* diffuse,
+                               float16* specular) {
     const float16 cosine = lanes_dot(n, l);
     float16 highlight = lanes_dot(v, lanes_fma(2.0f * cosine, n, lanes_minus(l)));
     if (hits->any_blinn) {
@@ -124,11 +125,14 @@ static inline Answer gouraud_answer(const HitLanes* hits, global const LightReco
         else if (light->type != LIGHT_DIRECTIONAL)
             at_vertex.direction = towards(light_position, p).direction;
         float16 diffuse, specular;
-        phong_terms(hits, lanes_load(corner->normal), at_vertex.direction, lanes_load(corner->to_eye), &diffuse, &specular);
+        phong_terms(hits, lanes_load(corner->normal), at_vertex.direction, lanes_load(corner->to_eye), &diffuse,
+                    &specular);
         const float16 weight = vload16(0, corner->weight);
         const int16 lit = diffuse != 0.0f;  // I_in is not a number where the light lies on the vertex
-        diffuse_light = lanes_select(diffuse_light, lanes_fma(weight * diffuse, at_vertex.incoming, diffuse_light), lit);
-        specular_light = lanes_select(specular_light, lanes_fma(weight * specular, at_vertex.incoming, specular_light), lit);
+        diffuse_light =
+            lanes_select(diffuse_light, lanes_fma(weight * diffuse, at_vertex.incoming, diffuse_light), lit);
+        specular_light =
+            lanes_select(specular_light, lanes_fma(weight * specular, at_vertex.incoming, specular_light), lit);
     }
     const Answer a = {lanes_mul(lanes_load(hits->diffuse), diffuse_light),
                       lanes_mul(lanes_load(hits->specular), specular_light)};
@@ -175,7 +179,8 @@ static inline uint push_shadow_rays(const HitLanes* hits, constant SceneConstant
     LightSample sample =
         sample_light(light, slot, lanes_load(hits->position), hits->sample, hits->path, &light_position);
     const Answer a = answer(hits, light, sample, light_position);
-    const int16 adds = above_surface(hits, constants, sample.direction) & (lanes_any(a.diffuse) | lanes_any(a.specular));
+    const int16 adds =
+        above_surface(hits, constants, sample.direction) & (lanes_any(a.diffuse) | lanes_any(a.specular));
     aim(hits, constants, light, light_position, &sample);
 
     float direction[3][LANES], diffuse[3][LANES], specular[3][LANES], t_max[LANES];

@@ -11,6 +11,9 @@
 
 namespace raymill::bench {
 
+/// The variant that traces as the renderer does when nobody asks for a traversal.
+inline constexpr const char* AUTOMATIC = "raymill automatic";
+
 /// Builds the hierarchy and keeps the last one built.
 class RaymillHierarchy {
   public:

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "exr_pixels.hpp"
 #include "image/temporary_folder.hpp"
@@ -126,8 +127,32 @@ TEST_F(Flags, of_statistics_print_a_row_for_every_kernel_on_standard_error) {
     const Outcome outcome = run_raymill({"render", scene_, "-o", folder_.file("a.exr"), "--stats"});
     EXPECT_EQ(outcome.status, 0);
     EXPECT_EQ(outcome.out, "");
-    for (const char* part : {"generate", "intersect", "shade", "shadow", "secondary", "432 camera", "film hash"})
+    for (const char* part : {"generate", "intersect", "shade", "shadow", "secondary", "wall clock", "film hash"})
         EXPECT_TRUE(contains(outcome.err, part)) << outcome.err << "\nwithout " << part;
+}
+
+TEST_F(Flags, of_statistics_files_write_both_beside_the_same_picture) {
+    const std::string stats = folder_.file("stats.json"), trace = folder_.file("trace.json");
+    const Picture plain = render({}), profiled = render({"--stats-json", stats, "--trace", trace});
+    EXPECT_TRUE(same_pixels(plain, profiled));
+    const auto json = nlohmann::json::parse(read_bytes(stats));
+    EXPECT_EQ(json.at("run").at("width"), 24);
+    EXPECT_EQ(json.at("depths").at(0).at("popped"), 432);
+    EXPECT_FALSE(json.at("launches").at("rows").empty());
+    std::vector<std::string> spans;
+    for (const auto& span : json.at("times").at("spans")) spans.push_back(span.at("name"));
+    const std::vector<std::string> expected = {"load scene",   "open device",     "build hierarchy", "build kernels",
+                                               "upload scene", "allocate queues", "render",          "write picture"};
+    EXPECT_EQ(spans, expected);
+    EXPECT_FALSE(nlohmann::json::parse(read_bytes(trace)).at("traceEvents").empty());
+}
+
+TEST_F(Flags, of_statistics_files_that_cannot_be_written_are_refused_before_rendering) {
+    const std::string picture = folder_.file("a.exr");
+    expect_failure(run_raymill({"render", scene_, "-o", picture, "--trace", folder_.file("no/where.json")}), 1,
+                   "where.json");
+    expect_failure(run_raymill({"render", scene_, "-o", picture, "--stats-json", picture}), 2, "two things at once");
+    EXPECT_EQ(folder_.entries(), 1);
 }
 
 TEST_F(Flags, of_silence_leave_nothing_to_read) {
