@@ -19,7 +19,7 @@ Bvh build_bvh(std::span<const Vertex> vertices, std::span<const Triangle> triang
         bvh::PrimitiveRefs refs = bvh::make_primitive_refs(vertices, triangles, spheres);
         result.statistics.dropped_not_finite = refs.dropped_not_finite;
         result.statistics.dropped_zero_area = refs.dropped_zero_area;
-        if (refs.count == 0) return;
+        if (refs.refs.empty()) return;
         const auto tree = bvh::build_binary_tree(std::move(refs), static_cast<std::uint32_t>(triangles.size()));
         bvh::collapse_to_wide(tree, vertices, triangles, spheres, result);
     });

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
-#include <vector>
 
+#include "bvh/large_array.hpp"
 #include "layout.h"
 
 namespace raymill {
@@ -33,9 +33,9 @@ struct BvhStatistics {
 
 /// nodes[0] is the root; empty when there is nothing to hit. All arrays are ready for upload.
 struct Bvh {
-    std::vector<BvhNode> nodes;
-    std::vector<TriangleBlock> triangle_blocks;
-    std::vector<SphereBlock> sphere_blocks;
+    bvh::LargeArray<BvhNode> nodes;
+    bvh::LargeArray<TriangleBlock> triangle_blocks;
+    bvh::LargeArray<SphereBlock> sphere_blocks;
     Bounds bounds;
     BvhStatistics statistics;
 };
