@@ -123,7 +123,7 @@ int render(RenderArguments arguments) {
     if (!arguments.quiet) print_warnings(scene.warnings);
 
     const Device device = arguments.device.open();
-    const Bvh bvh = build_bvh(scene.vertices, scene.triangles, scene.spheres, {arguments.device.threads});
+    const Bvh bvh = build_bvh(scene.vertices, scene.triangles, scene.spheres, arguments.device.bvh_options());
     if (!arguments.quiet) warn_of_dropped(bvh.statistics);
     Renderer renderer(device, scene, bvh, options);
     const double first_ray = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
