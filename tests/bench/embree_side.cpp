@@ -81,8 +81,9 @@ void add_variants(std::vector<Variant>& variants, RTCScene scene, std::uint32_t 
 
 }  // namespace
 
-EmbreeSide::EmbreeSide(const Scene& scene, unsigned threads, bool robust)
+EmbreeSide::EmbreeSide(const Scene& scene, unsigned threads, RTCBuildQuality quality, bool robust)
     : scene_(scene),
+      quality_(quality),
       robust_(robust),
       device_(rtcNewDevice(threads > 0 ? fmt::format("threads={}", threads).c_str() : nullptr)) {
     if (!device_) throw std::runtime_error("Embree: no device");
@@ -117,7 +118,7 @@ Build EmbreeSide::build() {
     const auto start = std::chrono::steady_clock::now();
     built_.reset(rtcNewScene(device_.get()));
     rtcSetSceneFlags(built_.get(), robust_ ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
-    rtcSetSceneBuildQuality(built_.get(), RTC_BUILD_QUALITY_MEDIUM);
+    rtcSetSceneBuildQuality(built_.get(), quality_);
     attach_triangles(built_.get());
     attach_spheres(built_.get());
     rtcCommitScene(built_.get());

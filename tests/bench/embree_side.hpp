@@ -17,9 +17,9 @@ namespace raymill::bench {
 class EmbreeSide {
   public:
     /// threads: of its builder; 0 for all. robust: its watertight mode, which ours always is.
-    EmbreeSide(const Scene& scene, unsigned threads, bool robust);
+    EmbreeSide(const Scene& scene, unsigned threads, RTCBuildQuality quality, bool robust);
 
-    /// Builds afresh, with medium quality, and keeps the result.
+    /// Builds afresh and keeps the result.
     Build build();
 
     /// Closest hits of `rays`, one by one.
@@ -43,6 +43,7 @@ class EmbreeSide {
 
     const Scene& scene_;
     std::vector<glm::vec4> spheres_;  // Embree loads sixteen aligned bytes a sphere: ours do not do
+    RTCBuildQuality quality_;
     bool robust_;
     std::atomic<std::ptrdiff_t> bytes_ = 0;  // that Embree holds; before the device, which reports to it
     std::unique_ptr<RTCDeviceTy, ReleaseDevice> device_;

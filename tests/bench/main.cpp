@@ -52,6 +52,9 @@ void add_options(CLI::App& app, Arguments& a) {
         ->check(CLI::IsMember({"packet", "single", "both"}));
     app.add_option("--device", a.device, "OpenCL device: index or part of its name");
     app.add_option("--threads", a.measure.threads, "Of either side; 0 for all")->check(CLI::Range(0u, 1024u));
+    static const std::map<std::string, BvhQuality> qualities = {{"fast", BvhQuality::fast}, {"high", BvhQuality::high}};
+    app.add_option("--bvh", a.measure.bvh, "Hierarchy to trace through, fast or high; Embree's is medium or high")
+        ->transform(CLI::CheckedTransformer(qualities).description(""));
     app.add_flag("--robust", a.measure.robust, "Embree's watertight mode (ours always is)");
     app.add_option("--json", a.json, "Write the numbers to this file as well");
 }

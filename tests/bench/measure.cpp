@@ -86,10 +86,10 @@ SetResult measure_set(const RaySet& set, RaymillSide& ours, const EmbreeSide& em
     return result;
 }
 
-BuildResult build_result(const std::vector<Build>& builds, std::size_t primitives) {
+BuildResult build_result(const char* name, const std::vector<Build>& builds, std::size_t primitives) {
     std::vector<double> rates;
     for (const Build& build : builds) rates.push_back(static_cast<double>(primitives) * 1e-6 / build.seconds);
-    return {quartiles(rates), static_cast<double>(builds.back().bytes) / static_cast<double>(primitives)};
+    return {name, quartiles(rates), static_cast<double>(builds.back().bytes) / static_cast<double>(primitives)};
 }
 
 }  // namespace
@@ -103,17 +103,23 @@ double SceneResult::worst_difference() const {
 
 SceneResult measure(const BenchScene& bench, const RaymillKernels& kernels, const MeasureOptions& options) {
     const Scene& scene = bench.scene;
-    RaymillHierarchy hierarchy(scene, options.threads);
-    EmbreeSide embree(scene, options.threads, options.robust);
-    std::vector<Build> ours, theirs;
+    RaymillHierarchy fast(scene, {options.threads, BvhQuality::fast}), high(scene, {options.threads, BvhQuality::high});
+    EmbreeSide medium(scene, options.threads, RTC_BUILD_QUALITY_MEDIUM, options.robust);
+    EmbreeSide embree_high(scene, options.threads, RTC_BUILD_QUALITY_HIGH, options.robust);
+    std::vector<Build> builds[4];
     for (int i = 0; i < options.builds; ++i) {
-        ours.push_back(hierarchy.build());
-        theirs.push_back(embree.build());
+        builds[0].push_back(fast.build());
+        builds[1].push_back(medium.build());
+        builds[2].push_back(high.build());
+        builds[3].push_back(embree_high.build());
     }
-    SceneResult result{bench.name, scene.triangles.size(), scene.spheres.size(), {}, {}, {}, {}};
-    const std::size_t primitives = result.triangles + result.spheres;
-    result.ours = build_result(ours, primitives);
-    result.embree = build_result(theirs, primitives);
+    SceneResult result{bench.name, scene.triangles.size(), scene.spheres.size(), {}, {}, {}};
+    const char* const names[] = {"raymill fast", "embree medium", "raymill high", "embree high"};
+    for (int i = 0; i < 4; ++i)
+        result.builds.push_back(build_result(names[i], builds[i], result.triangles + result.spheres));
+    const bool is_fast = options.bvh == BvhQuality::fast;
+    const RaymillHierarchy& hierarchy = is_fast ? fast : high;
+    const EmbreeSide& embree = is_fast ? medium : embree_high;
     result.statistics = hierarchy.bvh().statistics;
 
     RaymillSide side(kernels, scene, hierarchy.bvh());

@@ -33,6 +33,7 @@ struct SetResult {
 };
 
 struct BuildResult {
+    std::string name;
     Quartiles mprimitives;  // millions of triangles and spheres a second
     double bytes_a_primitive = 0;
 };
@@ -41,7 +42,7 @@ struct SceneResult {
     std::string name;
     std::size_t triangles = 0;
     std::size_t spheres = 0;
-    BuildResult ours, embree;
+    std::vector<BuildResult> builds;  // of either side in either quality
     BvhStatistics statistics;
     std::vector<SetResult> sets;
 
@@ -54,12 +55,13 @@ struct MeasureOptions {
     int height = 768;
     int rounds = 11;
     int builds = 3;
-    unsigned threads = 0;  // 0: all
-    bool robust = false;   // Embree's watertight mode
+    unsigned threads = 0;               // 0: all
+    BvhQuality bvh = BvhQuality::high;  // that rays are traced through; Embree's is medium for fast, high for high
+    bool robust = false;                // Embree's watertight mode
 };
 
-/// Builds both hierarchies `builds` times in turn, then measures each set of rays: one trace of every variant to
-/// compare the results, and `rounds` rounds in which each variant runs once, by the wall clock.
+/// Builds the hierarchies of both sides and qualities `builds` times in turn, then measures each set of rays: one trace
+/// of every variant to compare the results, and `rounds` rounds in which each variant runs once, by the wall clock.
 SceneResult measure(const BenchScene& bench, const RaymillKernels& kernels, const MeasureOptions& options);
 
 }  // namespace raymill::bench

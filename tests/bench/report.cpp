@@ -20,7 +20,9 @@ Json json_of(const Quartiles& q) {
 }
 
 Json json_of(const BuildResult& build) {
-    return {{"mprimitives_per_second", json_of(build.mprimitives)}, {"bytes_per_primitive", build.bytes_a_primitive}};
+    return {{"name", build.name},
+            {"mprimitives_per_second", json_of(build.mprimitives)},
+            {"bytes_per_primitive", build.bytes_a_primitive}};
 }
 
 Json json_of(const SetResult& set) {
@@ -36,27 +38,28 @@ Json json_of(const SetResult& set) {
 }
 
 Json json_of(const SceneResult& scene) {
-    Json sets = Json::array();
+    Json sets = Json::array(), builds = Json::array();
+    for (const BuildResult& build : scene.builds) builds.push_back(json_of(build));
     for (const SetResult& set : scene.sets) sets.push_back(json_of(set));
     return {{"scene", scene.name},
             {"triangles", scene.triangles},
             {"spheres", scene.spheres},
-            {"build", {{"raymill", json_of(scene.ours)}, {"embree", json_of(scene.embree)}}},
+            {"builds", builds},
             {"depth", scene.statistics.depth},
             {"surface_area_cost", scene.statistics.surface_area_cost},
             {"sets", sets}};
 }
 
-void print_build(const char* name, const BuildResult& build) {
-    fmt::print("  build {:<8} {:7.2f} M/s [{:.2f} {:.2f}]  {:6.1f} bytes a primitive\n", name, build.mprimitives.median,
-               build.mprimitives.lower, build.mprimitives.upper, build.bytes_a_primitive);
+void print_build(const BuildResult& build) {
+    fmt::print("  build {:<13} {:7.2f} M/s [{:.2f} {:.2f}]  {:6.1f} bytes a primitive\n", build.name,
+               build.mprimitives.median, build.mprimitives.lower, build.mprimitives.upper, build.bytes_a_primitive);
 }
 
 }  // namespace
 
 void print_heading(const Circumstances& c) {
-    fmt::print("{} ({}), {} compute units; Embree {}{}\n", c.device, c.driver, c.compute_units, c.embree,
-               c.options.robust ? ", robust" : "");
+    fmt::print("{} ({}), {} compute units, hierarchy {}; Embree {}{}\n", c.device, c.driver, c.compute_units,
+               c.options.bvh == BvhQuality::fast ? "fast" : "high", c.embree, c.options.robust ? ", robust" : "");
     fmt::print(
         "P camera, S to a point light, A to an area light, R mirrored, D diffuse rays. {} rounds: median "
         "[quartiles].\nTimes include reading rays and writing hits; ours of S and A the film, to which each "
@@ -67,8 +70,7 @@ void print_heading(const Circumstances& c) {
 void print_scene(const SceneResult& scene) {
     fmt::print("\n{}: {} triangles, {} spheres; depth {}, cost {:.1f}\n", scene.name, scene.triangles, scene.spheres,
                scene.statistics.depth, scene.statistics.surface_area_cost);
-    print_build("raymill", scene.ours);
-    print_build("embree", scene.embree);
+    for (const BuildResult& build : scene.builds) print_build(build);
     for (const SetResult& set : scene.sets) {
         fmt::print("  {}: {} {}, {:.1f} % {}\n", set.name, set.rays, set.description, 100 * set.hitting,
                    set.any_hit ? "blocked" : "hit");
@@ -101,6 +103,7 @@ void write_json(const std::string& file, const Circumstances& c, const std::vect
                 {"height", c.options.height},
                 {"rounds", c.options.rounds},
                 {"builds", c.options.builds},
+                {"bvh", c.options.bvh == BvhQuality::fast ? "fast" : "high"},
                 {"threads", c.options.threads},
                 {"scenes", Json::array()}};
     for (const SceneResult& scene : scenes) all["scenes"].push_back(json_of(scene));
