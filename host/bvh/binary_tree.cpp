@@ -14,23 +14,20 @@ namespace {
 
 constexpr std::size_t PARALLEL_SIZE = 2048;  // shorter ranges are one task
 
-/// Shorter ranges of one kind are binary leaves: as one leaf block costs the same however full it is, more splits
-/// gain little, and the build time grows with their number.
-constexpr std::size_t LEAF_SIZE = 4;
-
-/// A subtree to build: its node and its primitives [begin, begin + count) in one of the two buffers.
+/// A subtree to build: its node, its primitives [begin, begin + count) in one of the two buffers, and their bounds.
 struct Task {
     std::size_t node = 0;
     std::size_t begin = 0;
     std::size_t count = 0;
     int depth = 0;
     int buffer = 0;
+    RangeBounds bounds;
 
-    Task left(std::size_t left_count, int child_buffer) const {
-        return {node + 1, begin, left_count, depth + 1, child_buffer};
+    Task left(std::size_t left_count, int child_buffer, const RangeBounds& child_bounds) const {
+        return {node + 1, begin, left_count, depth + 1, child_buffer, child_bounds};
     }
-    Task right(std::size_t left_count, int child_buffer) const {
-        return {node + 2 * left_count, begin + left_count, count - left_count, depth + 1, child_buffer};
+    Task right(std::size_t left_count, int child_buffer, const RangeBounds& child_bounds) const {
+        return {node + 2 * left_count, begin + left_count, count - left_count, depth + 1, child_buffer, child_bounds};
     }
 };
 
@@ -50,21 +47,20 @@ class Builder {
 
     SubtreeCost build(const Task& task) {
         const std::span<PrimitiveRef> refs(buffers_[task.buffer] + task.begin, task.count);
-        const RangeBounds bounds = measure(refs);
         BinaryNode& node = nodes_[task.node];
         for (int axis = 0; axis < 3; ++axis) {
-            node.lower[axis] = bounds.box.lower[axis];
-            node.upper[axis] = bounds.box.upper[axis];
+            node.lower[axis] = task.bounds.box.lower[axis];
+            node.upper[axis] = task.bounds.box.upper[axis];
         }
         node.count = static_cast<std::uint32_t>(task.count);
         const double area = half_area(node.lower, node.upper);
 
         // Below this point only halving keeps the promised height. Each halving lowers balanced_height by one.
         const bool must_halve = task.depth + balanced_height(task.count) >= MAX_BINARY_HEIGHT;
-        const bool small = task.count <= (must_halve ? std::size_t{BVH_WIDTH} : LEAF_SIZE);
-        if (small && is_one_kind(refs)) return make_leaf(task, refs, area, node.choice);
+        // A leaf block costs the same however full it is: splitting one's worth gains little, and takes time.
+        if (task.count <= BVH_WIDTH && is_one_kind(refs)) return make_leaf(task, refs, area, node.choice);
 
-        const auto [left, right] = must_halve ? halve(task, refs, bounds) : split(task, refs, bounds);
+        const auto [left, right] = must_halve ? halve(task, refs) : split(task, refs);
         SubtreeCost left_cost, right_cost;
         if (task.count < PARALLEL_SIZE) {
             left_cost = build(left);
@@ -76,7 +72,7 @@ class Builder {
     }
 
   private:
-    using Halves = std::pair<Task, Task>;
+    using Tasks = std::pair<Task, Task>;
 
     bool is_sphere(const PrimitiveRef& ref) const { return ref.id() >= triangle_count_; }
 
@@ -90,37 +86,41 @@ class Builder {
         return collapse_leaf(area, static_cast<std::uint32_t>(task.count), is_sphere(refs[0]), choice);
     }
 
-    Halves at(const Task& task, std::size_t left_count, int child_buffer) const {
-        return {task.left(left_count, child_buffer), task.right(left_count, child_buffer)};
-    }
-
     /// By surface area where centroids differ, else by kind or index.
-    Halves split(const Task& task, std::span<PrimitiveRef> refs, const RangeBounds& bounds) {
-        const BinGrid grid(bounds.half_centroids);
-        const auto found = find_split(refs, bounds, grid);
-        if (!found) return halve(task, refs, bounds);
+    Tasks split(const Task& task, std::span<PrimitiveRef> refs) {
+        const BinGrid grid(task.bounds.half_centroids, bin_count(task.count));
+        const auto found = find_split(refs, task.bounds.box, grid);
+        if (!found) return halve(task, refs);
         const int target = 1 - task.buffer;
-        partition(refs, buffers_[target] + task.begin, grid, *found);
-        return at(task, found->left_count, target);
+        const Halves halves = partition(refs, buffers_[target] + task.begin, grid, *found);
+        return {task.left(found->left_count, target, halves.left), task.right(found->left_count, target, halves.right)};
     }
 
     /// At the median centroid of the longest axis, in whole leaf blocks; equal centroids by index. A single block's
     /// worth is split by kind if there are two.
-    Halves halve(const Task& task, std::span<PrimitiveRef> refs, const RangeBounds& bounds) {
+    Tasks halve(const Task& task, std::span<PrimitiveRef> refs) {
+        std::size_t left_count = 0;
         if (task.count <= BVH_WIDTH && !is_one_kind(refs)) {
             const auto middle = std::stable_partition(refs.begin(), refs.end(), [&](auto& r) { return !is_sphere(r); });
-            return at(task, static_cast<std::size_t>(middle - refs.begin()), task.buffer);
+            left_count = static_cast<std::size_t>(middle - refs.begin());
+        } else {
+            left_count = split_at_median(refs, task.bounds.half_centroids);
         }
-        const Float4 extent = bounds.half_centroids.upper - bounds.half_centroids.lower;
+        return {task.left(left_count, task.buffer, measure(refs.first(left_count))),
+                task.right(left_count, task.buffer, measure(refs.subspan(left_count)))};
+    }
+
+    static std::size_t split_at_median(std::span<PrimitiveRef> refs, const Box& half_centroids) {
+        const Float4 extent = half_centroids.upper - half_centroids.lower;
         const int axis = extent[0] >= extent[1] && extent[0] >= extent[2] ? 0 : extent[1] >= extent[2] ? 1 : 2;
-        const std::size_t in_blocks = (leaf_blocks(task.count) + 1) / 2 * BVH_WIDTH;
-        const std::size_t left_count = in_blocks < task.count ? in_blocks : task.count / 2;
+        const std::size_t in_blocks = (leaf_blocks(refs.size()) + 1) / 2 * BVH_WIDTH;
+        const std::size_t left_count = in_blocks < refs.size() ? in_blocks : refs.size() / 2;
         std::nth_element(refs.begin(), refs.begin() + static_cast<std::ptrdiff_t>(left_count), refs.end(),
                          [axis](const PrimitiveRef& a, const PrimitiveRef& b) {
                              const float ca = a.half_centroid()[axis], cb = b.half_centroid()[axis];
                              return ca != cb ? ca < cb : a.id() < b.id();
                          });
-        return at(task, left_count, task.buffer);
+        return left_count;
     }
 
     PrimitiveRef* buffers_[2];
@@ -131,12 +131,13 @@ class Builder {
 }  // namespace
 
 BinaryTree build_binary_tree(PrimitiveRefs refs, std::uint32_t triangle_count) {
-    assert(refs.count > 0);
-    const auto scratch = std::make_unique_for_overwrite<PrimitiveRef[]>(refs.count);
+    assert(!refs.refs.empty());
+    LargeArray<PrimitiveRef> scratch(refs.refs.size());
     BinaryTree tree;
     tree.refs = std::move(refs.refs);
-    tree.nodes = std::make_unique_for_overwrite<BinaryNode[]>(2 * refs.count - 1);
-    Builder(tree.refs.get(), scratch.get(), tree.nodes.get(), triangle_count).build({.count = refs.count});
+    tree.nodes.resize(2 * tree.refs.size() - 1);
+    const Task all{.count = tree.refs.size(), .bounds = measure(tree.refs)};
+    Builder(tree.refs.data(), scratch.data(), tree.nodes.data(), triangle_count).build(all);
     return tree;
 }
 

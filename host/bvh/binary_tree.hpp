@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
 
 #include "bvh/collapse.hpp"
 #include "bvh/primitive_refs.hpp"
@@ -33,8 +32,8 @@ inline std::size_t right_child(const BinaryNode* nodes, std::size_t node) {
 }
 
 struct BinaryTree {
-    std::unique_ptr<BinaryNode[]> nodes;   // [0] is the root
-    std::unique_ptr<PrimitiveRef[]> refs;  // in the order of the leaves
+    LargeArray<BinaryNode> nodes;   // [0] is the root
+    LargeArray<PrimitiveRef> refs;  // in the order of the leaves
 };
 
 /// Consumes the references; there must be one at least. Ids from triangle_count on are spheres. Runs in the caller's

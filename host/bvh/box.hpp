@@ -41,6 +41,11 @@ struct Box {
         lower = min(lower, point);
         upper = max(upper, point);
     }
+    /// Only where all bits of the mask are set; the others are zero.
+    void add_where(Int4 mask, Float4 point) {
+        lower = min(lower, mask ? point : splat(INFINITY));
+        upper = max(upper, mask ? point : splat(-INFINITY));
+    }
 };
 
 /// Half the surface area of a box that is not empty. In double: squares of float extents neither overflow nor vanish.

@@ -3,9 +3,11 @@
 #include <tbb/task_arena.h>
 
 #include <chrono>
+#include <utility>
 
 #include "bvh/binary_tree.hpp"
 #include "bvh/primitive_refs.hpp"
+#include "bvh/reinsertion.hpp"
 #include "bvh/wide_tree.hpp"
 
 namespace raymill {
@@ -19,8 +21,10 @@ Bvh build_bvh(std::span<const Vertex> vertices, std::span<const Triangle> triang
         bvh::PrimitiveRefs refs = bvh::make_primitive_refs(vertices, triangles, spheres);
         result.statistics.dropped_not_finite = refs.dropped_not_finite;
         result.statistics.dropped_zero_area = refs.dropped_zero_area;
-        if (refs.count == 0) return;
-        const auto tree = bvh::build_binary_tree(std::move(refs), static_cast<std::uint32_t>(triangles.size()));
+        if (refs.refs.empty()) return;
+        const auto triangle_count = static_cast<std::uint32_t>(triangles.size());
+        bvh::BinaryTree tree = bvh::build_binary_tree(std::move(refs), triangle_count);
+        if (options.quality == BvhQuality::high) tree = bvh::reinsert(std::move(tree), triangle_count);
         bvh::collapse_to_wide(tree, vertices, triangles, spheres, result);
     });
     result.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

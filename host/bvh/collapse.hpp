@@ -38,7 +38,7 @@ class CollapseChoice {
     static constexpr std::uint32_t LEAF_BIT = 1u << 21;
     static constexpr int HEIGHT_SHIFT = 24;
     static int shift(int roots) { return 3 * (roots - 2); }
-    std::uint32_t word_ = 0;
+    std::uint32_t word_;  // not initialised: arrays of nodes are touched first by the thread that fills them
 };
 
 /// What a parent needs to know of a binary subtree to decide.

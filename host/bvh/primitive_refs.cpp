@@ -96,8 +96,8 @@ PrimitiveRefs make_primitive_refs(std::span<const Vertex> vertices, std::span<co
     const std::size_t total = triangles.size() + spheres.size();
     assert(total < NO_INDEX);
     PrimitiveRefs result;
-    result.refs = std::make_unique_for_overwrite<PrimitiveRef[]>(total);
-    PrimitiveRef* refs = result.refs.get();
+    result.refs.resize(total);
+    PrimitiveRef* refs = result.refs.data();
 
     // Each chunk is dense at its own place; then the chunks close up, in order.
     std::vector<ChunkCounts> chunks((total + CHUNK_SIZE - 1) / CHUNK_SIZE);
@@ -112,13 +112,15 @@ PrimitiveRefs make_primitive_refs(std::span<const Vertex> vertices, std::span<co
         }
         chunks[chunk] = counts;
     });
+    std::size_t count = 0;
     for (std::size_t chunk = 0; chunk < chunks.size(); ++chunk) {
         const PrimitiveRef* begin = refs + chunk * CHUNK_SIZE;
-        if (result.count != chunk * CHUNK_SIZE) std::copy_n(begin, chunks[chunk].kept, refs + result.count);
-        result.count += chunks[chunk].kept;
+        if (count != chunk * CHUNK_SIZE) std::copy_n(begin, chunks[chunk].kept, refs + count);
+        count += chunks[chunk].kept;
         result.dropped_not_finite += chunks[chunk].not_finite;
         result.dropped_zero_area += chunks[chunk].zero_area;
     }
+    result.refs.resize(count);
     return result;
 }
 

@@ -3,11 +3,11 @@
 
 #include <bit>
 #include <cstdint>
-#include <memory>
 #include <span>
 
 #include "bvh/box.hpp"
 #include "bvh/bvh.hpp"
+#include "bvh/large_array.hpp"
 
 namespace raymill::bvh {
 
@@ -23,10 +23,9 @@ struct PrimitiveRef {
 };
 static_assert(sizeof(PrimitiveRef) == 32);
 
-/// References in the order of their ids, in memory that is touched first by the thread that fills it.
+/// References in the order of their ids.
 struct PrimitiveRefs {
-    std::unique_ptr<PrimitiveRef[]> refs;
-    std::size_t count = 0;
+    LargeArray<PrimitiveRef> refs;
     std::size_t dropped_not_finite = 0;
     std::size_t dropped_zero_area = 0;
 };

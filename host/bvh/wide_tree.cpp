@@ -48,7 +48,7 @@ BvhNode empty_node() {
 /// Lays out wide nodes and leaves in the order of a walk through the binary tree.
 class Layout {
   public:
-    Layout(const BinaryTree& tree, std::uint32_t triangle_count, std::vector<BvhNode>& nodes)
+    Layout(const BinaryTree& tree, std::uint32_t triangle_count, LargeArray<BvhNode>& nodes)
         : tree_(tree), nodes_(nodes), triangle_count_(triangle_count) {}
 
     void run() {
@@ -76,7 +76,7 @@ class Layout {
     double area(const Subtree& subtree) const { return half_area(node(subtree).lower, node(subtree).upper); }
     Subtree left(const Subtree& s) const { return {left_child(s.node), s.begin}; }
     Subtree right(const Subtree& s) const {
-        const std::size_t right_node = right_child(tree_.nodes.get(), s.node);
+        const std::size_t right_node = right_child(tree_.nodes.data(), s.node);
         return {right_node, s.begin + tree_.nodes[left_child(s.node)].count};
     }
 
@@ -166,7 +166,7 @@ class Layout {
     }
 
     const BinaryTree& tree_;
-    std::vector<BvhNode>& nodes_;
+    LargeArray<BvhNode>& nodes_;
     std::vector<Leaf> leaves_;
     std::uint32_t triangle_count_;
     std::size_t triangle_blocks_ = 0;

@@ -66,7 +66,7 @@ int explain(const ExplainArguments& arguments) {
         options.memory.queue_capacity = static_cast<std::uint64_t>(std::clamp<int>(scene.settings.spp, CHUNK, 1 << 16));
 
     const Device device = arguments.device.open();
-    const Bvh bvh = build_bvh(scene.vertices, scene.triangles, scene.spheres, {arguments.device.threads});
+    const Bvh bvh = build_bvh(scene.vertices, scene.triangles, scene.spheres, arguments.device.bvh_options());
     Renderer renderer(device, scene, bvh, options);
     const verify::RayTree tree = verify::trace_pixel(device, renderer);
     const reference::Tracer tracer(scene);

@@ -151,7 +151,7 @@ int render(RenderArguments arguments) {
 
     const Device device = clock.timeline.measure("open device", [&] { return arguments.device.open(); });
     const Bvh bvh = clock.timeline.measure("build hierarchy", [&] {
-        return build_bvh(scene.vertices, scene.triangles, scene.spheres, {arguments.device.threads});
+        return build_bvh(scene.vertices, scene.triangles, scene.spheres, arguments.device.bvh_options());
     });
     if (!arguments.quiet) warn_of_dropped(bvh.statistics);
     Renderer renderer(device, scene, bvh, options);

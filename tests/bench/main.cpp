@@ -59,6 +59,9 @@ void add_options(CLI::App& app, Arguments& a) {
     app.add_option("--builds", a.measure.builds, "Times that each hierarchy is built")->check(CLI::Range(1, 100));
     app.add_option("--traversal", a.traversal, "Which of our kernels")
         ->check(CLI::IsMember({"automatic", "packet", "single", "all"}));
+    static const std::map<std::string, BvhQuality> qualities = {{"fast", BvhQuality::fast}, {"high", BvhQuality::high}};
+    app.add_option("--bvh", a.measure.bvh, "Our hierarchy, fast or high")
+        ->transform(CLI::CheckedTransformer(qualities).description(""));
     app.add_option("--quality", a.quality, "Of Embree's hierarchy")->check(CLI::IsMember({"medium", "high", "both"}));
     app.add_option("--device", a.device, "OpenCL device: index or part of its name");
     app.add_option("--threads", a.measure.threads, "Of either side; 0 for all")->check(CLI::Range(0u, 1024u));

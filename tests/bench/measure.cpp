@@ -84,20 +84,23 @@ BuildResult build_result(const std::string& name, const std::vector<Build>& buil
 
 SceneResult measure(const BenchScene& bench, const RaymillKernels& kernels, const MeasureOptions& options) {
     const Scene& scene = bench.scene;
-    RaymillHierarchy hierarchy(scene, options.threads);
+    RaymillHierarchy fast(scene, {options.threads, BvhQuality::fast}), high(scene, {options.threads, BvhQuality::high});
     EmbreeSide embree(scene, options.threads, options.robust);
-    std::vector<Build> ours;
+    std::vector<Build> ours_fast, ours_high;
     std::vector<std::vector<Build>> theirs(options.qualities.size());
     for (int i = 0; i < options.builds; ++i) {
-        ours.push_back(hierarchy.build());
+        ours_fast.push_back(fast.build());
+        ours_high.push_back(high.build());
         for (std::size_t q = 0; q < theirs.size(); ++q) theirs[q].push_back(embree.build(options.qualities[q]));
     }
     SceneResult result{bench.name, scene.triangles.size(), scene.spheres.size(), {}, {}, {}};
     const std::size_t primitives = result.triangles + result.spheres;
-    result.builds.push_back(build_result("raymill", ours, primitives));
+    result.builds.push_back(build_result("raymill fast", ours_fast, primitives));
+    result.builds.push_back(build_result("raymill high", ours_high, primitives));
     for (std::size_t q = 0; q < theirs.size(); ++q)
         result.builds.push_back(
             build_result(std::string("embree ") + name_of(options.qualities[q]), theirs[q], primitives));
+    const RaymillHierarchy& hierarchy = options.bvh == BvhQuality::fast ? fast : high;
     result.statistics = hierarchy.bvh().statistics;
 
     RaymillSide side(kernels, scene, hierarchy.bvh());

@@ -43,7 +43,7 @@ struct SceneResult {
     std::string name;
     std::size_t triangles = 0;
     std::size_t spheres = 0;
-    std::vector<BuildResult> builds;  // ours, then Embree's by quality
+    std::vector<BuildResult> builds;  // ours and Embree's by quality
     BvhStatistics statistics;
     std::vector<SetResult> sets;
 
@@ -58,6 +58,7 @@ struct MeasureOptions {
     int builds = 3;
     unsigned threads = 0;  // 0: all
     Clock clock = Clock::wall;
+    BvhQuality bvh = BvhQuality::high;                                  // of our hierarchy
     bool robust = false;                                                // Embree's watertight mode
     std::vector<Quality> qualities = {Quality::medium, Quality::high};  // of Embree's hierarchies, at least one
 };

@@ -55,7 +55,7 @@ Film film_of(const Device& device, std::size_t pixels) {
 Build RaymillHierarchy::build() {
     bvh_ = {};
     const auto start = std::chrono::steady_clock::now();
-    bvh_ = build_bvh(scene_.vertices, scene_.triangles, scene_.spheres, {threads_});
+    bvh_ = build_bvh(scene_.vertices, scene_.triangles, scene_.spheres, options_);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     return {took.count(), bvh_.nodes.size() * sizeof(BvhNode) + bvh_.triangle_blocks.size() * sizeof(TriangleBlock) +
                               bvh_.sphere_blocks.size() * sizeof(SphereBlock)};

@@ -76,8 +76,8 @@ void print_build(const BuildResult& build) {
 }  // namespace
 
 void print_heading(const Circumstances& c) {
-    fmt::print("{} ({}), {} compute units; Embree {}{}\n", c.device, c.driver, c.compute_units, c.embree,
-               c.options.robust ? ", robust" : "");
+    fmt::print("{} ({}), {} compute units, hierarchy {}; Embree {}{}\n", c.device, c.driver, c.compute_units,
+               c.options.bvh == BvhQuality::fast ? "fast" : "high", c.embree, c.options.robust ? ", robust" : "");
     fmt::print(
         "P camera, S to a point light, A to an area light, R mirrored, T through glass, D diffuse rays. {} rounds: "
         "median "
@@ -139,6 +139,7 @@ void write_json(const std::string& file, const Circumstances& c, const std::vect
                 {"height", c.options.height},
                 {"rounds", c.options.rounds},
                 {"builds", c.options.builds},
+                {"bvh", c.options.bvh == BvhQuality::fast ? "fast" : "high"},
                 {"threads", c.options.threads},
                 {"clock", c.options.clock == Clock::wall ? "wall" : "processor"},
                 {"summary", Json::array()},

@@ -62,7 +62,7 @@ Work trace_of(RaymillSide& side, const RaySet& set) {
 struct PreparedScene {
     PreparedScene(BenchScene made, const RaymillKernels& kernels, const MeasureOptions& options)
         : bench(std::move(made)), sets(ray_sets(bench, options)) {
-        RaymillHierarchy hierarchy(bench.scene, options.threads);
+        RaymillHierarchy hierarchy(bench.scene, {options.threads, options.bvh});
         hierarchy.build();
         side.emplace(kernels, bench.scene, hierarchy.bvh());
     }
@@ -103,7 +103,7 @@ ScalingTable by_threads(const Recipe& recipe, const ScalingOptions& options, con
     counts.push_back(most);
     ScalingTable table{recipe.name + ": a ray by threads", {}, "speed-up", SMALLEST_SPEED_UP * most, true, {}};
 
-    RaymillHierarchy hierarchy(bench.scene, options.measure.threads);
+    RaymillHierarchy hierarchy(bench.scene, {options.measure.threads, options.measure.bvh});
     hierarchy.build();
     std::vector<std::unique_ptr<RaymillKernels>> kernels;
     std::vector<std::unique_ptr<RaymillSide>> sides;
@@ -205,7 +205,7 @@ void measure_scaling(const Recipe& recipe, const ScalingOptions& options,
     const unsigned most = options.measure.threads > 0 ? options.measure.threads : std::thread::hardware_concurrency();
     if (most > 1) done(by_threads(recipe, options, bench, most));
     const Device device = open_device(options.device, options.measure.threads);
-    RaymillHierarchy hierarchy(bench.scene, options.measure.threads);
+    RaymillHierarchy hierarchy(bench.scene, {options.measure.threads, options.measure.bvh});
     hierarchy.build();
     done(by_queue(recipe, options, bench, device, hierarchy.bvh()));
     done(by_image(recipe, options, bench, device, hierarchy.bvh()));

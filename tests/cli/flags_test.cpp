@@ -34,6 +34,14 @@ class Flags : public testing::Test {
     const std::string scene_ = folder_.file("scene.toml");
 };
 
+TEST_F(Flags, say_how_long_to_build_the_hierarchy) {
+    for (const char* quality : {"fast", "high"}) {
+        const Outcome outcome = check({"--bvh", quality});
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        EXPECT_TRUE(contains(outcome.out, " bytes a primitive, ")) << outcome.out;
+    }
+}
+
 TEST_F(Flags, that_make_no_sense_are_refused_by_name) {
     const std::vector<std::vector<std::string>> senseless = {
         {"--size", "640"},         {"--size", "0x10"},        {"--size", "10x-1"},    {"--size", "8x8x8"},
@@ -42,7 +50,7 @@ TEST_F(Flags, that_make_no_sense_are_refused_by_name) {
         {"--crop", "nan,1,0,1"},   {"--mem-limit", "lots"},   {"--mem-limit", "12Q"}, {"--mem-limit", "0"},
         {"--mem-limit", "-5M"},    {"--mem-limit", ""},       {"--spp", "0"},         {"--depth", "-1"},
         {"--queue-capacity", "0"}, {"--work-group", "0"},     {"--threads", "0"},     {"--integrator", "magic"},
-        {"--exposure", "inf"},     {"--seed", "-1"}};
+        {"--exposure", "inf"},     {"--seed", "-1"},          {"--bvh", "best"},    {"--bvh", ""}};
     for (const auto& flag : senseless) {
         SCOPED_TRACE(flag[0] + " '" + flag[1] + "'");
         // With an equals sign, so that a value that begins with a minus is one.
@@ -95,6 +103,8 @@ TEST_F(Flags, of_the_device_do_not_change_the_picture) {
     const Picture plain = render({});
     EXPECT_TRUE(same_pixels(plain, render({"--queue-capacity", "7", "--work-group", "8", "--threads", "1"})));
     EXPECT_TRUE(same_pixels(plain, render({"--mem-limit", "1M", "--kernel-dir", RAYMILL_KERNELS})));
+    EXPECT_TRUE(same_pixels(plain, render({"--bvh", "fast"})));
+    EXPECT_TRUE(same_pixels(plain, render({"--bvh", "high"})));
     EXPECT_FALSE(same_pixels(plain, render({"--depth", "0"})));
 }
 
