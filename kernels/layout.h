@@ -251,8 +251,12 @@ typedef struct {
 /// What a wave tells the host, and what the film saw. 64-bit: added to by any number of work-items.
 typedef struct {
     ulong children;          // rays that `secondary` was asked to push in this wave
+    ulong parents;           // hits since the start that `secondary` found children of
     ulong shadow_rays;       // shadow rays that `shade` has pushed since the start
+    ulong shadow_traced;     // of these, how many `shadow` has taken
     ulong shadow_blocked;    // shadow rays that brought nothing
+    ulong missed;            // rays without a hit, where a frame is profiled
+    ulong passing;           // hits on surfaces that pass light on, where a frame is profiled
     ulong saturated;         // film contributions cut to FILM_LIMIT, or sums that overflowed
     ulong not_a_number;      // film contributions left out
 } Counters;
@@ -266,14 +270,11 @@ typedef struct {
     uint plane_count;
     uint node_count;      // 0: nothing but planes
     uint shadows;
-    uint robust_offset;   // 0: rays start exactly at the hit, to show the acne
-    uint spp;
-    uint seed;
+    uint robust_offset;  // 0: rays start exactly at the hit, to show the acne
     float min_weight;
     uint any_filter;      // some material transmits: a filtered shadow ray may pass through
     uint environment;     // index of the lat-long texture that rays see when they miss, or NO_INDEX
     float environment_scale[3];
-    uint slot_count;           // light samples of a hit, all lights together
     uint plane[FILM_PLANES];   // where each plane lies in the film, in planes; 0: not kept (but for the beauty)
     uint film_pixels;          // of a plane
 } SceneConstants;
@@ -293,8 +294,8 @@ RAYMILL_ASSERT_SIZE(Texture, 12);
 RAYMILL_ASSERT_SIZE(LightRecord, 96);
 RAYMILL_ASSERT_SIZE(LightSlot, 8);
 RAYMILL_ASSERT_SIZE(CameraRecord, 92);
-RAYMILL_ASSERT_SIZE(Counters, 40);
-RAYMILL_ASSERT_SIZE(SceneConstants, 136);
+RAYMILL_ASSERT_SIZE(Counters, 72);
+RAYMILL_ASSERT_SIZE(SceneConstants, 124);
 
 #ifndef __OPENCL_VERSION__
 }  // namespace raymill

@@ -1,6 +1,6 @@
 // Reflected and refracted rays of a batch's hits.
 // Reads:  rays [first_ray, first_ray + count), hits [0, count).
-// Writes: children, from 0 on; counters->children.
+// Writes: children, from 0 on; counters->children and parents.
 // Next:   intersect, one level deeper.
 
 #include "lib/material.h"
@@ -42,13 +42,6 @@ static inline void write_child(const World* world, global const Ray* parent, con
     child->route = parent->route != ROUTE_CAMERA ? parent->route : branch == 0 ? ROUTE_REFLECTED : ROUTE_REFRACTED;
 }
 
-/// Whether the hit's material spawns rays at all; most do not, and need no more work.
-static inline bool may_spawn(const World* world, uint primitive) {
-    if (primitive == NO_INDEX) return false;
-    global const Material* material = world->materials + material_of(world, primitive);
-    return material->reflection + material->transmission > 0.0f;
-}
-
 /// One work-item a chunk of CHUNK hits: counts its children, takes their places with one atomic add, writes them.
 kernel void secondary(global const Ray* rays, uint first_ray, uint count, global const Hit* hits,
                       global const Vertex* vertices, global const Triangle* triangles, global const Sphere* spheres,
@@ -59,11 +52,16 @@ kernel void secondary(global const Ray* rays, uint first_ray, uint count, global
     const uint begin = get_global_id(0) * CHUNK;
     const uint end = min(begin + CHUNK, count);
     Children c;
-    uint spawned = 0;
-    for (uint i = begin; i < end; ++i)
-        if (may_spawn(&world, hits[i].primitive)) spawned += children_of(&world, rays + first_ray + i, hits[i], &c);
+    uint spawned = 0, parents = 0;
+    for (uint i = begin; i < end; ++i) {
+        if (!may_spawn(&world, hits[i].primitive)) continue;
+        const uint found = children_of(&world, rays + first_ray + i, hits[i], &c);
+        spawned += found;
+        parents += found != 0;
+    }
     if (spawned == 0) return;
 
+    atom_add(&counters->parents, (ulong)parents);
     ulong place = atom_add(&counters->children, (ulong)spawned);
     if (place + spawned > capacity) return;  // the host sees the count and stops
     for (uint i = begin; i < end; ++i) {

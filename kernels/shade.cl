@@ -5,7 +5,7 @@
 // Next:   shadow.
 
 #include "lib/film.h"
-#include "lib/shading.h"
+#include "lib/lighting.h"
 
 /// One work-item a chunk of CHUNK hits; segment = chunk * slot_count + slot.
 kernel void shade(global const Ray* rays, uint first_ray, uint count, global const Hit* hits, uint first_slot,
@@ -20,22 +20,26 @@ kernel void shade(global const Ray* rays, uint first_ray, uint count, global con
     const uint begin = chunk * CHUNK;
     if (begin >= count) return;
     const uint end = min(begin + CHUNK, count);
+    HitLanes lanes = {.count = 0};
     uint pushed[SHADOW_SAMPLES] = {0};
 
     for (uint i = begin; i < end; ++i) {
-        const Hit hit = hits[i];
-        if (hit.primitive == NO_INDEX) continue;
-        global const Ray* ray = rays + first_ray + i;
-        const Shading shading = shading_at(&world, ray, hit);
-        if (first_slot == 0)
-            film_add_two(&film, ray->route, ray->pixel, FILM_AMBIENT, ambient_radiance(&world, &shading), FILM_EMISSION,
-                         emitted_radiance(&shading));
-        if (!answers_light(&shading)) continue;
+        if (hits[i].primitive != NO_INDEX) {
+            global const Ray* ray = rays + first_ray + i;
+            const Shading shading = shading_at(&world, ray, hits[i]);
+            if (first_slot == 0)
+                film_add_two(&film, ray->route, ray->pixel, FILM_AMBIENT, ambient_radiance(&world, &shading),
+                             FILM_EMISSION, emitted_radiance(&shading));
+            if (answers_light(&shading)) put_hit(&lanes, &world, &shading);
+        }
+        if (lanes.count < LANES && (i + 1 < end || lanes.count == 0)) continue;
         for (uint k = 0; k < slot_count; ++k) {
             const LightSlot slot = slots[first_slot + k];
-            global ShadowRay* shadow_ray = shadow_rays + (chunk * slot_count + k) * CHUNK + pushed[k];
-            pushed[k] += shade_light_sample(&world, &shading, lights + slot.light, slot, shadow_ray);
+            global ShadowRay* segment = shadow_rays + (chunk * slot_count + k) * CHUNK;
+            pushed[k] += push_shadow_rays(&lanes, constants, lights + slot.light, slot, segment + pushed[k]);
         }
+        lanes.count = 0;
+        lanes.any_blinn = lanes.any_gouraud = false;
     }
 
     uint total = 0;

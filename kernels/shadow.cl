@@ -82,5 +82,6 @@ kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shado
             ++blocked;
         }
     }
+    atom_add(&counters->shadow_traced, (ulong)count);
     if (blocked != 0) atom_add(&counters->shadow_blocked, (ulong)blocked);
 }

@@ -129,6 +129,12 @@ void DeviceArguments::add_to(CLI::App& command) {
                     "auto, packet (coherent rays together) or single; the image does not depend on it")
         ->type_name("NAME")
         ->transform(CLI::CheckedTransformer(traversals).description(""));
+    static const std::map<std::string, BvhQuality> qualities = {{"fast", BvhQuality::fast}, {"high", BvhQuality::high}};
+    command
+        .add_option("--bvh", bvh,
+                    "high (default) or fast: how long to build the hierarchy; the image does not depend on it")
+        ->type_name("NAME")
+        ->transform(CLI::CheckedTransformer(qualities).description(""));
     command.add_option("--kernel-dir", kernel_dir, "Read the kernels from this folder instead of the program")
         ->type_name("DIR");
 }

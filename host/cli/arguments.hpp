@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "bvh/bvh.hpp"
 #include "device/device.hpp"
 #include "scene/scene.hpp"
 #include "wavefront/renderer.hpp"
@@ -36,10 +37,12 @@ struct DeviceArguments {
     std::uint32_t work_group = 0;
     std::string mem_limit;
     Traversal traversal = Traversal::automatic;
+    BvhQuality bvh = BvhQuality::high;
     std::string kernel_dir;
 
     void add_to(CLI::App& command);
     Device open() const { return open_device(device, threads); }
+    BvhOptions bvh_options() const { return {threads, bvh}; }
     /// Throws UsageError.
     RenderOptions options() const;
 };

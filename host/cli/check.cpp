@@ -48,7 +48,7 @@ void print_scene(const Scene& scene) {
     }
 }
 
-void print_hierarchy(const Bvh& bvh) {
+void print_hierarchy(const Scene& scene, const Bvh& bvh) {
     const BvhStatistics& s = bvh.statistics;
     if (bvh.nodes.empty()) {
         fmt::print("hierarchy   empty\n");
@@ -57,6 +57,9 @@ void print_hierarchy(const Bvh& bvh) {
         fmt::print("hierarchy   {} nodes, {} triangle blocks, {} sphere blocks, depth {}, SAH cost {:.2f}, {:.3f} s\n",
                    bvh.nodes.size(), bvh.triangle_blocks.size(), bvh.sphere_blocks.size(), s.depth,
                    s.surface_area_cost, s.seconds);
+        const auto count = static_cast<double>(scene.primitive_count() - s.dropped_not_finite - s.dropped_zero_area);
+        fmt::print("            {:.1f} bytes a primitive, {:.2f} million primitives a second\n",
+                   static_cast<double>(bvh.bytes()) / count, 1e-6 * count / s.seconds);
     }
     if (s.dropped_not_finite > 0) fmt::print("left out    {} triangles with a vertex that is not finite\n", s.dropped_not_finite);
     if (s.dropped_zero_area > 0) fmt::print("left out    {} triangles without area\n", s.dropped_zero_area);
@@ -78,9 +81,9 @@ int check(const CheckArguments& arguments) {
     const RenderOptions options = arguments.device.options();
     const Scene scene = arguments.scene.load();
     print_warnings(scene.warnings);
-    const Bvh bvh = build_bvh(scene.vertices, scene.triangles, scene.spheres, {arguments.device.threads});
+    const Bvh bvh = build_bvh(scene.vertices, scene.triangles, scene.spheres, arguments.device.bvh_options());
     print_scene(scene);
-    print_hierarchy(bvh);
+    print_hierarchy(scene, bvh);
     const DeviceInfo device = planned_device(arguments.device);
     print_memory(plan_memory(scene, bvh, options.planes, options.memory, device), device);
     return 0;

@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <memory>
+#include <ostream>
 
 #include "bvh/bvh.hpp"
 #include "cli/arguments.hpp"
 #include "cli/commands.hpp"
 #include "cli/progress.hpp"
-#include "image/image.hpp"
+#include "common/files.hpp"
 #include "verify/explanation.hpp"
 
 namespace raymill {
@@ -50,15 +50,6 @@ double escape_length(const Scene& scene, const Bvh& bvh) {
     return bvh.nodes.empty() ? 2 * view : std::max(2 * view, double{glm::length(extent)});
 }
 
-void write_lines(const std::string& file, const std::string& lines) {
-    write_atomically(file, [&](const std::string& temporary) {
-        std::ofstream out(temporary, std::ios::binary);
-        out << lines;
-        out.close();
-        if (!out) throw OutputError(fmt::format("{}: writing the rays failed", file));
-    });
-}
-
 int explain(const ExplainArguments& arguments) {
     if (!arguments.scene.crop.empty()) throw UsageError("--crop: explain takes one pixel, by --pixel");
     RenderOptions options = arguments.device.options();
@@ -75,7 +66,7 @@ int explain(const ExplainArguments& arguments) {
         options.memory.queue_capacity = static_cast<std::uint64_t>(std::clamp<int>(scene.settings.spp, CHUNK, 1 << 16));
 
     const Device device = arguments.device.open();
-    const Bvh bvh = build_bvh(scene.vertices, scene.triangles, scene.spheres, {arguments.device.threads});
+    const Bvh bvh = build_bvh(scene.vertices, scene.triangles, scene.spheres, arguments.device.bvh_options());
     Renderer renderer(device, scene, bvh, options);
     const verify::RayTree tree = verify::trace_pixel(device, renderer);
     const reference::Tracer tracer(scene);
@@ -84,7 +75,9 @@ int explain(const ExplainArguments& arguments) {
                scene.settings.height, scene.settings.spp, scene.settings.depth);
     fmt::print("{}", verify::explanation_text(truth, tree, arguments.sample));
     if (!arguments.obj.empty())
-        write_lines(arguments.obj, verify::ray_lines(truth, tree, arguments.sample, escape_length(scene, bvh)));
+        write_text_atomically(arguments.obj, [&](std::ostream& out) {
+            out << verify::ray_lines(truth, tree, arguments.sample, escape_length(scene, bvh));
+        });
     return tree.sums_agree() ? 0 : sums_differ;
 }
 

@@ -4,13 +4,17 @@
 
 #include <filesystem>
 #include <glm/gtc/matrix_transform.hpp>
+#include <set>
 
 #include "bvh/bvh.hpp"
 #include "cli/aov.hpp"
 #include "cli/arguments.hpp"
 #include "cli/commands.hpp"
 #include "cli/progress.hpp"
+#include "cli/run_profile.hpp"
+#include "common/files.hpp"
 #include "image/image.hpp"
+#include "profile/table.hpp"
 
 namespace raymill {
 
@@ -25,6 +29,8 @@ struct RenderArguments {
     std::string aovs;
     bool half = false;
     bool stats = false;
+    std::string stats_file;
+    std::string trace_file;
     bool quiet = false;
 };
 
@@ -81,24 +87,8 @@ void warn_of_film(const Frame& frame) {
     if (frame.not_a_number > 0)
         fmt::print(stderr, "warning: {} contributions were not a number and are left out\n", frame.not_a_number);
     if (frame.saturated > 0)
-        fmt::print(stderr, "warning: {} contributions were brighter than the film holds and are cut\n", frame.saturated);
-}
-
-void print_statistics(const Frame& frame, const Renderer& renderer, const Bvh& bvh, double first_ray) {
-    double busy = 0;
-    for (const StageTime& stage : frame.stages) busy += stage.seconds;
-    fmt::print(stderr, "{:<12}{:>10}{:>16}{:>12}{:>8}{:>10}\n", "stage", "launches", "items", "seconds", "share", "ns/item");
-    for (const StageTime& stage : frame.stages)
-        fmt::print(stderr, "{:<12}{:>10}{:>16}{:>12.4f}{:>7.1f}%{:>10.1f}\n", stage.stage, stage.launches, stage.items,
-                   stage.seconds, 100 * stage.seconds / frame.seconds,
-                   1e9 * stage.seconds / static_cast<double>(std::max<std::uint64_t>(stage.items, 1)));
-    fmt::print(stderr, "{:<12}{:>10}{:>16}{:>12.4f}{:>7.1f}%\n", "host, launch", "", "", frame.seconds - busy,
-               100 * (frame.seconds - busy) / frame.seconds);
-    fmt::print(stderr, "rays: {} camera, {} secondary, {} shadow ({} blocked), in {} waves of at most {}\n",
-               frame.rays.camera, frame.rays.secondary, frame.rays.shadow, frame.shadow_blocked, frame.waves,
-               renderer.memory().queue_capacity);
-    fmt::print(stderr, "hierarchy: {:.3f} s, first ray after {:.3f} s, film hash {:016x}\n", bvh.statistics.seconds,
-               first_ray, frame.hash());
+        fmt::print(stderr, "warning: {} contributions were brighter than the film holds and are cut\n",
+                   frame.saturated);
 }
 
 void print_closing_line(const RenderArguments& arguments, const Scene& scene, const Frame& frame) {
@@ -109,37 +99,68 @@ void print_closing_line(const RenderArguments& arguments, const Scene& scene, co
                rays / frame.seconds / 1e6);
 }
 
-int render(RenderArguments arguments) {
-    const auto start = std::chrono::steady_clock::now();
-    if (arguments.output.empty()) arguments.output = default_output(arguments.scene.file);
-    const std::vector<std::string> aovs = parse_aovs(arguments.aovs);
-    RenderOptions options = arguments.device.options();
-    options.planes = aov_planes(aovs);
-    options.keep_sums = !aovs.empty() || arguments.stats;
-    if (image_format(arguments.output) == ImageFormat::png && (arguments.half || !aovs.empty()))
-        throw UsageError(fmt::format("{}: a PNG has 8 bits a channel and no layers; give an output that ends in .exr",
-                                     arguments.half ? "--half" : "--aov"));
-    const Scene scene = arguments.scene.load();
-    check_writable(arguments.output);
-    if (!arguments.quiet) print_warnings(scene.warnings);
+profile::Detail detail_of(const RenderArguments& arguments) {
+    if (!arguments.stats_file.empty() || !arguments.trace_file.empty()) return profile::Detail::launches;
+    return arguments.stats ? profile::Detail::totals : profile::Detail::none;
+}
 
-    const Device device = arguments.device.open();
-    const Bvh bvh = build_bvh(scene.vertices, scene.triangles, scene.spheres, {arguments.device.threads});
-    if (!arguments.quiet) warn_of_dropped(bvh.statistics);
-    Renderer renderer(device, scene, bvh, options);
-    const double first_ray = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+/// Throws UsageError where one file would replace another, OutputError where one could not be written.
+void check_outputs(const RenderArguments& arguments) {
+    std::set<std::filesystem::path> seen;
+    for (const std::string& file : {arguments.output, arguments.stats_file, arguments.trace_file}) {
+        if (file.empty()) continue;
+        if (!seen.insert(std::filesystem::path(file).lexically_normal()).second)
+            throw UsageError(
+                fmt::format("{} is to hold two things at once: give -o, --stats-json and --trace files of "
+                            "their own",
+                            file));
+        check_writable(file);
+    }
+}
 
+void report(const RenderArguments& arguments, const profile::RunProfile& run) {
+    if (arguments.stats) fmt::print(stderr, "{}", profile::table(run));
+    if (!arguments.stats_file.empty()) write_statistics(arguments.stats_file, run);
+    if (!arguments.trace_file.empty()) write_trace(arguments.trace_file, run);
+}
+
+/// Shows progress; an interrupt ends the frame with what is rendered.
+Frame render_frame(const RenderArguments& arguments, Renderer& renderer) {
     InterruptGuard guard;
     ProgressBar bar(!arguments.quiet);
     const auto progress = [&](double share) {
         bar.show(share);
         return !guard.interrupted();
     };
-    Frame frame = renderer.render(progress, arguments.stats);
-    bar.clear();
+    return renderer.render(progress, detail_of(arguments));
+}
+
+int render(RenderArguments arguments) {
+    RunClock clock;
+    if (arguments.output.empty()) arguments.output = default_output(arguments.scene.file);
+    const std::vector<std::string> aovs = parse_aovs(arguments.aovs);
+    RenderOptions options = arguments.device.options();
+    options.planes = aov_planes(aovs);
+    options.keep_sums = !aovs.empty() || detail_of(arguments) != profile::Detail::none;
+    if (image_format(arguments.output) == ImageFormat::png && (arguments.half || !aovs.empty()))
+        throw UsageError(fmt::format("{}: a PNG has 8 bits a channel and no layers; give an output that ends in .exr",
+                                     arguments.half ? "--half" : "--aov"));
+    const Scene scene = clock.timeline.measure("load scene", [&] { return arguments.scene.load(); });
+    check_outputs(arguments);
+    if (!arguments.quiet) print_warnings(scene.warnings);
+
+    const Device device = clock.timeline.measure("open device", [&] { return arguments.device.open(); });
+    const Bvh bvh = clock.timeline.measure("build hierarchy", [&] {
+        return build_bvh(scene.vertices, scene.triangles, scene.spheres, arguments.device.bvh_options());
+    });
+    if (!arguments.quiet) warn_of_dropped(bvh.statistics);
+    Renderer renderer(device, scene, bvh, options);
+    Frame frame =
+        clock.timeline.measure(std::string(profile::render_span), [&] { return render_frame(arguments, renderer); });
     if (!arguments.quiet) warn_of_film(frame);
-    if (arguments.stats) print_statistics(frame, renderer, bvh, first_ray);
-    write_picture(arguments, scene, frame, aovs);
+    clock.timeline.measure("write picture", [&] { write_picture(arguments, scene, frame, aovs); });
+    if (detail_of(arguments) != profile::Detail::none)
+        report(arguments, clock.read(scene, device, options, renderer, frame));
     if (!arguments.quiet) print_closing_line(arguments, scene, frame);
     if (frame.finished == 1) return 0;
     fmt::print(stderr, "interrupted: {:.0f}% of the samples are in {}\n", 100 * frame.finished, arguments.output);
@@ -155,13 +176,18 @@ Command add_render_command(CLI::App& app) {
     command.add_option("-o,--output", arguments->output, "Picture to write; <scene>.exr in this folder by default")
         ->type_name("FILE");
     command
-        .add_option("--aov", arguments->aovs,
-                    "Layers of the EXR file: ambient, diffuse, specular, reflection, refraction, emission (their sum is "
-                    "the picture), shadow, albedo, N, Z, P, id, depth, samples; all")
+        .add_option(
+            "--aov", arguments->aovs,
+            "Layers of the EXR file: ambient, diffuse, specular, reflection, refraction, emission (their sum is "
+            "the picture), shadow, albedo, N, Z, P, id, depth, samples; all")
         ->type_name("LIST");
     command.add_flag("--half", arguments->half, "16-bit floats in the EXR file instead of 32-bit ones");
     arguments->device.add_to(command);
-    command.add_flag("--stats", arguments->stats, "Print where the time went");
+    command.add_flag("--stats", arguments->stats, "Print what each stage did and where the time went");
+    command.add_option("--stats-json", arguments->stats_file, "The same for programs, with every launch")
+        ->type_name("FILE");
+    command.add_option("--trace", arguments->trace_file, "Timeline of the run for Perfetto and chrome://tracing")
+        ->type_name("FILE");
     command.add_flag("--quiet", arguments->quiet, "Print errors only");
     command.footer(
         "Examples:\n"

@@ -38,7 +38,7 @@ int verify_scene(const VerifyArguments& arguments) {
     if (arguments.scene.size.empty()) shrink(scene.settings);
     print_warnings(scene.warnings);
     const Device device = arguments.device.open();
-    const Bvh bvh = build_bvh(scene.vertices, scene.triangles, scene.spheres, {arguments.device.threads});
+    const Bvh bvh = build_bvh(scene.vertices, scene.triangles, scene.spheres, arguments.device.bvh_options());
     Renderer renderer(device, scene, bvh, options);
     const auto reports = verify::verify_frame(device, scene, renderer, arguments.options);
 

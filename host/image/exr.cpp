@@ -28,7 +28,8 @@
 #include <utility>
 
 #include "image/image.hpp"
-#include "image/output_error.hpp"
+#include "common/files.hpp"
+#include "common/output_error.hpp"
 
 namespace raymill {
 namespace {

@@ -49,15 +49,6 @@ enum class ImageFormat { exr, png };
 /// What the extension of `file` (.exr or .png, in any case) asks for. Throws UsageError for any other.
 ImageFormat image_format(const std::string& file);
 
-/// Calls write(temporary path) and renames the result to `file`. The temporary is an empty file in the same folder; if
-/// anything fails it is removed, and a `file` that was there before stays as it was. Symbolic links are followed, and
-/// an existing file keeps its permissions. What is not a regular file (a pipe, /dev/stdout) receives the bytes instead.
-/// Throws OutputError with what failed and why; what `write` throws passes through.
-void write_atomically(const std::string& file, const std::function<void(const std::string& temporary)>& write);
-
-/// Throws OutputError if `file` could not be created (folder missing, no permission), without touching it.
-void check_writable(const std::string& file);
-
 /// Channels R G B A and those of the layers, ZIP compression. Atomic as write_atomically is. Throws OutputError.
 void write_exr(const std::string& file, const Image& image, const std::vector<ImageLayer>& layers,
                const ImageMetadata& metadata, ExrPixels pixels);

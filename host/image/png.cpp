@@ -8,7 +8,8 @@
 #include <memory>
 
 #include "image/image.hpp"
-#include "image/output_error.hpp"
+#include "common/files.hpp"
+#include "common/output_error.hpp"
 #include "image/srgb.hpp"
 
 namespace raymill {

@@ -18,8 +18,8 @@ class Buffer {
         : size_(size), memory_(device.context, CL_MEM_READ_WRITE, std::max<std::size_t>(size, 1) * sizeof(T)) {}
     Buffer(const Device& device, std::span<const T> values) : Buffer(device, values.size()) { write(device, values); }
 
-    /// The elements of `values`, which must not be empty and must outlive the buffer: a device that is this processor works
-    /// in their memory itself. They are what the device wrote after read_back().
+    /// The elements of `values`, which must not be empty and must outlive the buffer: a device that is this processor
+    /// works in their memory itself. They are what the device wrote after read_back().
     static Buffer over(const Device& device, std::span<T> values) {
         Buffer buffer;
         buffer.size_ = values.size();

@@ -28,8 +28,10 @@ Buffer<float> upload_texels(const Device& device, const Scene& scene) {
     return texels;
 }
 
-template <class T>
-Buffer<T> upload(const Device& device, const std::vector<T>& values) {
+/// Of any contiguous array.
+template <class Array>
+auto upload(const Device& device, const Array& values) {
+    using T = typename Array::value_type;
     return Buffer<T>(device, std::span<const T>(values));
 }
 

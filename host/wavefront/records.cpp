@@ -209,11 +209,8 @@ SceneConstants scene_constants(const Scene& scene, std::size_t node_count, const
                 : settings.shadows == ShadowMode::opaque ? SHADOWS_OPAQUE
                                                          : SHADOWS_NONE;
     r.robust_offset = settings.shadow_offset == ShadowOffset::robust;
-    r.spp = static_cast<uint>(settings.spp);
-    r.seed = settings.seed;
     r.min_weight = static_cast<float>(settings.min_weight);
     r.any_filter = std::ranges::any_of(scene.materials, [](const SceneMaterial& m) { return m.transmission > 0; });
-    r.slot_count = static_cast<uint>(light_slots(scene).size());
     for (int plane = 0; plane < FILM_PLANES; ++plane)
         r.plane[plane] = planes.keeps(plane) ? planes.index(plane) : 0;
     r.film_pixels = static_cast<uint>(film_pixels(scene));

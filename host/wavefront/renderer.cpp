@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 
 #include "wavefront/records.hpp"
 
@@ -11,11 +10,8 @@ namespace raymill {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-/// Consecutive ranges of at most SHADOW_SAMPLES light samples; one empty range without lights, for ambient and emission.
+/// Consecutive ranges of at most SHADOW_SAMPLES light samples; one empty range without lights, for ambient and
+/// emission.
 std::vector<SlotRange> make_slot_ranges(uint slots) {
     std::vector<SlotRange> ranges;
     for (uint first = 0; first < slots; first += SHADOW_SAMPLES)
@@ -23,40 +19,6 @@ std::vector<SlotRange> make_slot_ranges(uint slots) {
     if (ranges.empty()) ranges.push_back({0, 0});
     return ranges;
 }
-
-/// Collects the events of a frame's launches and adds up their times.
-class StageClock {
-  public:
-    void observe(const char* stage, uint items, const cl::Event& event) { pending_.push_back({stage, items, event}); }
-
-    /// Call when the launches so far have finished.
-    void drain() {
-        for (const Launch& launch : pending_) {
-            StageTime& time = entry(launch.stage);
-            ++time.launches;
-            time.items += launch.items;
-            time.seconds += 1e-9 * static_cast<double>(launch.event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
-                                                       launch.event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
-        }
-        pending_.clear();
-    }
-
-    std::vector<StageTime> times() const { return times_; }
-
-  private:
-    struct Launch {
-        const char* stage;
-        uint items;
-        cl::Event event;
-    };
-    StageTime& entry(const char* stage) {
-        for (StageTime& time : times_)
-            if (time.stage == stage) return time;
-        return times_.emplace_back(StageTime{stage, 0, 0, 0});
-    }
-    std::vector<Launch> pending_;
-    std::vector<StageTime> times_;
-};
 
 std::uint64_t camera_samples(const Scene& scene) {
     return film_pixels(scene) * static_cast<std::uint64_t>(scene.settings.spp);
@@ -72,7 +34,8 @@ std::span<const cl_long> Frame::plane(int plane) const {
 std::uint64_t Frame::hash() const {
     std::uint64_t h = 0xcbf29ce484222325u;
     for (const cl_long sum : sums)
-        for (int byte = 0; byte < 8; ++byte) h = (h ^ (static_cast<std::uint64_t>(sum) >> (8 * byte) & 0xff)) * 0x100000001b3u;
+        for (int byte = 0; byte < 8; ++byte)
+            h = (h ^ (static_cast<std::uint64_t>(sum) >> (8 * byte) & 0xff)) * 0x100000001b3u;
     return h;
 }
 
@@ -82,42 +45,67 @@ Renderer::Renderer(const Device& device, const Scene& scene, const Bvh& bvh, con
       planes_(options.planes),
       keep_sums_(options.keep_sums),
       plan_(plan_memory(scene, bvh, planes_, options.memory, device.info)),
-      stages_(device, options.work_group, options.kernel_dir, options.traversal),
-      device_scene_(device, scene, bvh, planes_),
+      stages_(
+          timeline_.measure(std::string(profile::kernels_span),
+                            [&] { return Stages(device, options.work_group, options.kernel_dir, options.traversal); })),
+      device_scene_(timeline_.measure("upload scene", [&] { return DeviceScene(device, scene, bvh, planes_); })),
       max_depth_(plan_.queues - 1),
       waves_(plan_.queue_capacity, max_depth_),
       slot_ranges_(make_slot_ranges(static_cast<uint>(device_scene_.light_slots.size()))) {
-    try {
-        for (int depth = 0; depth <= max_depth_; ++depth) queues_.emplace_back(device, waves_.queue_size(depth));
-        const std::size_t segments = std::size_t{Stages::chunks(plan_.queue_capacity)} * slot_ranges_.front().count;
-        hits_ = Buffer<Hit>(device, plan_.queue_capacity);
-        shadow_queue_ = {{device, segments * CHUNK}, {device, segments}};
-        film_ = {{device, film_pixels(scene) * FILM_CHANNELS * planes_.count()}, {device, 1}};
-        make_ready();
-        device.queue.finish();
-    } catch (const cl::Error& error) {
-        throw DeviceError(error);
-    }
+    timeline_.measure("allocate queues", [&] { allocate_queues(); });
 }
 
-Frame Renderer::render(const Progress& progress, bool time_stages) try {
-    const Clock::time_point start = Clock::now();
-    StageClock clock;
+void Renderer::allocate_queues() try {
+    for (int depth = 0; depth <= max_depth_; ++depth) queues_.emplace_back(device_, waves_.queue_size(depth));
+    const std::size_t segments = std::size_t{Stages::chunks(plan_.queue_capacity)} * slot_ranges_.front().count;
+    hits_ = Buffer<Hit>(device_, plan_.queue_capacity);
+    shadow_queue_ = {{device_, segments * CHUNK}, {device_, segments}};
+    film_ = {{device_, film_pixels(scene_) * FILM_CHANNELS * planes_.count()}, {device_, 1}};
+    make_ready();
+    device_.queue.finish();
+} catch (const cl::Error& error) {
+    throw DeviceError(error);
+}
+
+Frame Renderer::render(const Progress& progress, profile::Detail detail) try {
+    const std::int64_t began = profile::now();
+    start(detail);
+    trace_all(progress);
+    Frame frame = read_frame();
+    if (profiler_) frame.profile = profiler_->finish(waves_);
     stages_.observe({});
-    if (time_stages)
-        stages_.observe([&](const char* stage, uint items, const cl::Event& e) { clock.observe(stage, items, e); });
+    profiler_.reset();
+    frame.seconds = 1e-9 * static_cast<double>(profile::now() - began);
+    if (keep_sums_) frame.sums = film_.sums.read(device_);
+    return frame;
+} catch (const cl::Error& error) {
+    throw DeviceError(error);
+}
+
+void Renderer::start(profile::Detail detail) {
+    stages_.observe({});
+    profiler_.reset();
+    if (detail != profile::Detail::none) {
+        const Profiler::FrameShape shape{plan_.queue_capacity, shadow_queue_.rays.size(), slot_ranges_.size(),
+                                         max_depth_, planes_};
+        profiler_.emplace(device_, shape, detail);
+        stages_.observe([this](const LaunchSize& size, const cl::Event& e) { profiler_->launched(size, e); });
+    }
     make_ready();
     ready_ = false;
     counts_ = {};
-    Frame frame;
+    waves_.start();
+}
 
+void Renderer::trace_all(const Progress& progress) {
     const std::uint64_t samples = camera_samples(scene_);
     bool going_on = true;
     for (;;) {
         std::optional<Batch> batch = waves_.next();
         if (!batch) {
             if (!going_on || counts_.camera == samples) break;
-            const uint count = static_cast<uint>(std::min<std::uint64_t>(plan_.queue_capacity, samples - counts_.camera));
+            const uint count =
+                static_cast<uint>(std::min<std::uint64_t>(plan_.queue_capacity, samples - counts_.camera));
             stages_.generate(device_scene_, counts_.camera, count, queues_[0]);
             counts_.camera += count;
             waves_.push(0, count);
@@ -125,32 +113,34 @@ Frame Renderer::render(const Progress& progress, bool time_stages) try {
             show("generate", *batch);
         }
         trace(*batch);
-        ++frame.waves;
-        if (time_stages) clock.drain();
-        if (progress) going_on = progress(static_cast<double>(counts_.camera) / static_cast<double>(samples)) && going_on;
+        if (progress)
+            going_on = progress(static_cast<double>(counts_.camera) / static_cast<double>(samples)) && going_on;
     }
+    waves_.check_drained();
+}
 
+Frame Renderer::read_frame() {
+    Frame frame;
+    const std::uint64_t samples = camera_samples(scene_);
     frame.rgba = resolve();
-    frame.seconds = seconds_since(start);
     frame.samples_per_pixel = scene_.settings.spp;
     frame.planes = planes_;
-    if (keep_sums_) frame.sums = film_.sums.read(device_);
-    if (time_stages) clock.drain();
     const Counters counters = film_.counters.read_one(device_);
+    if (counters.shadow_rays != counters.shadow_traced)
+        throw QueueMismatch(
+            fmt::format("{} shadow rays were pushed and {} popped", counters.shadow_rays, counters.shadow_traced));
     counts_.shadow = counters.shadow_rays;
     frame.rays = counts_;
     frame.shadow_blocked = counters.shadow_blocked;
     frame.saturated = counters.saturated;
     frame.not_a_number = counters.not_a_number;
+    for (int depth = 0; depth <= max_depth_; ++depth) frame.waves += waves_.counts(depth).batches;
     frame.finished = samples > 0 ? static_cast<double>(counts_.camera) / static_cast<double>(samples) : 1;
-    frame.stages = clock.times();
-    stages_.observe({});
     return frame;
-} catch (const cl::Error& error) {
-    throw DeviceError(error);
 }
 
-/// Memory costs most when it is touched for the first time: that of the film and the picture is, before the frame begins.
+/// Memory costs most when it is touched for the first time: that of the film and the picture is, before the frame
+/// begins.
 void Renderer::make_ready() {
     if (ready_) return;
     film_.sums.clear(device_);
@@ -179,25 +169,30 @@ void Renderer::trace(const Batch& batch) {
         film_.pixels_once = pixels_once && slots.count == 1;  // each light sample has a shadow ray of its own
         stages_.shadow(device_scene_, shadow_queue_, Stages::chunks(batch.count) * slots.count, film_);
         show("shadow", batch, slots);
+        if (profiler_) profiler_->end_pass(film_.counters);
     }
-    if (planes_.any_feature())
-        stages_.features(device_scene_, rays, static_cast<uint>(batch.depth), hits_, film_);
-    if (batch.depth == max_depth_)
+    if (planes_.any_feature()) stages_.features(device_scene_, rays, static_cast<uint>(batch.depth), hits_, film_);
+    if (profiler_) stages_.tally(device_scene_, hits_, batch.count, film_);
+    const bool goes_deeper = batch.depth < max_depth_;
+    if (goes_deeper) {
+        Buffer<Ray>& children = queues_[static_cast<std::size_t>(batch.depth) + 1];
+        device_.queue.enqueueFillBuffer(film_.counters.memory(), cl_ulong{0}, offsetof(Counters, children),
+                                        sizeof(cl_ulong));
+        stages_.secondary(device_scene_, rays, hits_, children, film_);
+    }
+    if (!goes_deeper && !profiler_) {
         device_.queue.finish();
-    else
-        spawn(batch, rays);
+        return;
+    }
+    const Counters counters = film_.counters.read_one(device_);
+    if (goes_deeper) take_children(batch, counters.children);
+    if (profiler_) profiler_->end_wave(batch, counters);
 }
 
-void Renderer::spawn(const Batch& batch, QueueRange<Ray> rays) {
-    Buffer<Ray>& queue = queues_[static_cast<std::size_t>(batch.depth) + 1];
-    constexpr std::size_t counter = offsetof(Counters, children);
-    device_.queue.enqueueFillBuffer(film_.counters.memory(), cl_ulong{0}, counter, sizeof(cl_ulong));
-    stages_.secondary(device_scene_, rays, hits_, queue, film_);
-    cl_ulong children = 0;
-    device_.queue.enqueueReadBuffer(film_.counters.memory(), CL_TRUE, counter, sizeof children, &children);
+void Renderer::take_children(const Batch& batch, std::uint64_t children) {
     waves_.push(batch.depth + 1, children);
     counts_.secondary += children;
-    show("secondary", batch, {}, &queue, static_cast<uint>(children));
+    show("secondary", batch, {}, &queues_[static_cast<std::size_t>(batch.depth) + 1], static_cast<uint>(children));
 }
 
 void Renderer::show(const char* stage, const Batch& batch, SlotRange slots, const Buffer<Ray>* children,

@@ -4,11 +4,14 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "profile/timeline.hpp"
 #include "wavefront/memory_plan.hpp"
+#include "wavefront/profiler.hpp"
 #include "wavefront/stages.hpp"
 #include "wavefront/waves.hpp"
 
@@ -20,7 +23,7 @@ struct RenderOptions {
     bool keep_sums = true;       // fills Frame::sums, for layers and for the hash
     std::size_t work_group = 0;  // items; 0: what suits each stage
     Traversal traversal = Traversal::automatic;
-    std::string kernel_dir;      // empty: the embedded kernels
+    std::string kernel_dir;  // empty: the embedded kernels
 };
 
 struct RayCounts {
@@ -30,27 +33,19 @@ struct RayCounts {
     std::uint64_t total() const { return camera + secondary + shadow; }
 };
 
-/// Time and work of one kernel, summed over its launches.
-struct StageTime {
-    std::string stage;
-    std::uint64_t launches = 0;
-    std::uint64_t items = 0;
-    double seconds = 0;
-};
-
 struct Frame {
-    std::vector<float> rgba;         // of the crop window, row by row from the top
+    std::vector<float> rgba;  // of the crop window, row by row from the top
     int samples_per_pixel = 1;
     FilmPlanes planes;
-    std::vector<cl_long> sums;       // the film's integers: planes, in them pixels, in them FILM_CHANNELS
+    std::vector<cl_long> sums;  // the film's integers: planes, in them pixels, in them FILM_CHANNELS
     RayCounts rays;
     std::uint64_t shadow_blocked = 0;
     std::uint64_t saturated = 0;     // film contributions that were cut
     std::uint64_t not_a_number = 0;  // film contributions that were left out
     std::uint64_t waves = 0;
-    double seconds = 0;              // from the first sample to the picture
-    double finished = 1;             // share of the camera samples; less than 1 when interrupted
-    std::vector<StageTime> stages;   // when timed
+    double seconds = 0;             // from the first sample to the picture
+    double finished = 1;            // share of the camera samples; less than 1 when interrupted
+    profile::FrameProfile profile;  // when asked for
 
     /// The integers of a plane that is kept.
     std::span<const cl_long> plane(int plane) const;
@@ -63,9 +58,9 @@ struct WaveView {
     Batch batch;
     QueueRange<Ray> rays;
     const Buffer<Hit>& hits;
-    SlotRange slots;                   // light samples of this pass, for shade and shadow
-    const ShadowQueue& shadow_rays;    // as shade left it: segment = chunk * slots.count + slot
-    const Buffer<Ray>* children;       // after secondary
+    SlotRange slots;                 // light samples of this pass, for shade and shadow
+    const ShadowQueue& shadow_rays;  // as shade left it: segment = chunk * slots.count + slot
+    const Buffer<Ray>* children;     // after secondary
     uint children_count;
     const Film& film;
 };
@@ -89,14 +84,21 @@ class Renderer {
     const DeviceScene& device_scene() const { return device_scene_; }
     Stages& stages() { return stages_; }
 
-    /// Renders one frame. time_stages: fills Frame::stages. Throws DeviceError, QueueOverflow.
-    Frame render(const Progress& progress = {}, bool time_stages = false);
+    /// What the constructor did: building the kernels, uploading the scene, allocating the queues.
+    const std::vector<profile::Span>& setup() const { return timeline_.spans(); }
+
+    /// Renders one frame. detail: what Frame::profile tells. Throws DeviceError, QueueOverflow, QueueMismatch.
+    Frame render(const Progress& progress = {}, profile::Detail detail = profile::Detail::none);
 
   private:
+    void allocate_queues();
     void make_ready();
+    void start(profile::Detail detail);
+    void trace_all(const Progress& progress);
+    Frame read_frame();
     std::vector<float> resolve();
     void trace(const Batch& batch);
-    void spawn(const Batch& batch, QueueRange<Ray> rays);
+    void take_children(const Batch& batch, std::uint64_t children);
     void show(const char* stage, const Batch& batch, SlotRange slots = {}, const Buffer<Ray>* children = nullptr,
               uint children_count = 0) const;
 
@@ -105,6 +107,7 @@ class Renderer {
     FilmPlanes planes_;
     bool keep_sums_;
     MemoryPlan plan_;
+    profile::Timeline timeline_;
     Stages stages_;
     DeviceScene device_scene_;
     int max_depth_;
@@ -118,6 +121,7 @@ class Renderer {
     std::vector<SlotRange> slot_ranges_;
     RayCounts counts_;
     WaveObserver observer_;
+    std::optional<Profiler> profiler_;
 };
 
 }  // namespace raymill

@@ -8,8 +8,8 @@ namespace raymill {
 
 namespace {
 
-const std::vector<std::string> kernel_files = {"generate.cl", "intersect.cl", "shade.cl",  "features.cl",
-                                               "shadow.cl",   "secondary.cl", "resolve.cl"};
+const std::vector<std::string> kernel_files = {"generate.cl", "intersect.cl", "shade.cl", "features.cl",
+                                               "shadow.cl",   "secondary.cl", "tally.cl", "resolve.cl"};
 
 // Kernels of one item a work-item want groups that fill the vector units; those that loop over a chunk want none
 // (PoCL replicates their stacks for each work-item of a group).
@@ -20,9 +20,13 @@ template <class T>
 const cl::Buffer& argument(const Buffer<T>& buffer) {
     return buffer.memory();
 }
-uint argument(uint value) { return value; }
-cl_ulong argument(std::uint64_t value) { return value; }
+uint argument(uint value) {
+    return value;
+}
 uint argument(bool value) {
+    return value;
+}
+cl_ulong argument(std::uint64_t value) {
     return value;
 }
 
@@ -36,16 +40,20 @@ Stages::Stages(const Device& device, std::size_t work_group, const std::string& 
     const bool packets =
         traversal == Traversal::packet || (traversal == Traversal::automatic && device.info.type == "CPU");
     const cl::Program program = build_program(device, kernel_files, kernel_dir, packets ? "-DRAYMILL_PACKETS" : "");
-    const auto stage = [&](const char* name, std::size_t group) {
-        return Stage{name, make_kernel(program, name), work_group > 0 ? work_group : group};
+    const auto stage = [&](profile::Stage name, std::size_t group, uint items) {
+        return Stage{name, make_kernel(program, profile::stage_name(name).data()), work_group > 0 ? work_group : group,
+                     items};
     };
-    generate_ = stage("generate", item_group);
-    intersect_ = stage("intersect", chunk_group);
-    shade_ = stage("shade", chunk_group);
-    features_ = stage("features", chunk_group);
-    shadow_ = stage("shadow", chunk_group);
-    secondary_ = stage("secondary", chunk_group);
-    resolve_ = stage("resolve", item_group);
+    const auto item_stage = [&](profile::Stage name) { return stage(name, item_group, 1); };
+    const auto chunk_stage = [&](profile::Stage name) { return stage(name, chunk_group, CHUNK); };
+    generate_ = chunk_stage(profile::Stage::generate);
+    intersect_ = chunk_stage(profile::Stage::intersect);
+    shade_ = chunk_stage(profile::Stage::shade);
+    features_ = chunk_stage(profile::Stage::features);
+    shadow_ = chunk_stage(profile::Stage::shadow);
+    secondary_ = chunk_stage(profile::Stage::secondary);
+    tally_ = chunk_stage(profile::Stage::tally);
+    resolve_ = item_stage(profile::Stage::resolve);
 }
 
 template <class... Arguments>
@@ -58,15 +66,18 @@ void Stages::launch(Stage& stage, uint work_items, uint items, const Arguments&.
         cl::Event event;
         device_.queue.enqueueNDRangeKernel(stage.kernel, cl::NullRange, cl::NDRange(groups * stage.local_size),
                                            cl::NDRange(stage.local_size), nullptr, observer_ ? &event : nullptr);
-        if (observer_) observer_(stage.name, items, event);
+        if (observer_) {
+            const std::uint64_t places = std::uint64_t{groups} * stage.local_size * stage.items;
+            observer_({stage.name, items, work_items, groups, places}, event);
+        }
     } catch (const cl::Error& error) {
-        throw DeviceError(fmt::format("kernel {}: {} failed: {} ({})", stage.name, error.what(),
+        throw DeviceError(fmt::format("kernel {}: {} failed: {} ({})", profile::stage_name(stage.name), error.what(),
                                       status_name(error.err()), error.err()));
     }
 }
 
 void Stages::generate(const DeviceScene& scene, std::uint64_t first_sample, uint count, Buffer<Ray>& rays) {
-    launch(generate_, count, count, first_sample, count, scene.camera, rays);
+    launch(generate_, chunks(count), count, first_sample, count, scene.camera, rays);
 }
 
 void Stages::intersect(const DeviceScene& scene, QueueRange<Ray> rays, Buffer<Hit>& hits, Film& film) {
@@ -99,8 +110,13 @@ void Stages::secondary(const DeviceScene& scene, QueueRange<Ray> rays, const Buf
                        Film& film) {
     const uint capacity = static_cast<uint>(children.size());
     launch(secondary_, chunks(rays.count), rays.count, rays.items, rays.first, rays.count, hits, scene.vertices,
-           scene.triangles, scene.spheres, scene.planes, scene.materials, scene.textures, scene.texels,
-           scene.constants, children, capacity, film.counters);
+           scene.triangles, scene.spheres, scene.planes, scene.materials, scene.textures, scene.texels, scene.constants,
+           children, capacity, film.counters);
+}
+
+void Stages::tally(const DeviceScene& scene, const Buffer<Hit>& hits, uint count, Film& film) {
+    launch(tally_, chunks(count), count, hits, count, scene.triangles, scene.spheres, scene.planes, scene.materials,
+           scene.constants, film.counters);
 }
 
 void Stages::resolve(const Film& film, uint spp, Buffer<float>& pixels) {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 
+#include "profile/profile.hpp"
 #include "wavefront/device_scene.hpp"
 
 namespace raymill {
@@ -38,8 +39,18 @@ struct SlotRange {
     uint count = 0;
 };
 
-/// Called after each launch with the stage's name and its event, where launches are to be timed.
-using LaunchObserver = std::function<void(const char* stage, uint items, const cl::Event& event)>;
+/// What a launch was asked to do; see profile::Launch.
+struct LaunchSize {
+    profile::Stage stage;
+    std::uint64_t items;
+    std::uint64_t work_items;
+    std::uint64_t groups;
+    std::uint64_t places;
+};
+
+/// Called after each launch with its event, where launches are to be timed. items of shadow are the places of its
+/// segments: only the device knows how many rays are in them.
+using LaunchObserver = std::function<void(const LaunchSize& size, const cl::Event& event)>;
 
 /// How rays go through the hierarchy. packet: coherent rays of a chunk together, as vector units like it; single: each
 /// alone. automatic: packet on processors, single elsewhere. The picture does not depend on it.
@@ -63,22 +74,25 @@ class Stages {
     /// Counts its children in film.counters.children, from the value it finds there.
     void secondary(const DeviceScene& scene, QueueRange<Ray> rays, const Buffer<Hit>& hits, Buffer<Ray>& children,
                    Film& film);
+    /// Adds to film.counters.missed and passing.
+    void tally(const DeviceScene& scene, const Buffer<Hit>& hits, uint count, Film& film);
     void resolve(const Film& film, uint spp, Buffer<float>& pixels);
 
     static uint chunks(uint items) { return (items + CHUNK - 1) / CHUNK; }
 
   private:
     struct Stage {
-        const char* name;
+        profile::Stage name;
         cl::Kernel kernel;
         std::size_t local_size;
+        uint items;  // of a work-item
     };
     template <class... Arguments>
     void launch(Stage& stage, uint work_items, uint items, const Arguments&... arguments);
 
     const Device& device_;
     LaunchObserver observer_;
-    Stage generate_, intersect_, shade_, features_, shadow_, secondary_, resolve_;
+    Stage generate_, intersect_, shade_, features_, shadow_, secondary_, tally_, resolve_;
 };
 
 }  // namespace raymill

@@ -7,7 +7,8 @@
 
 namespace raymill {
 
-Waves::Waves(uint capacity, int max_depth) : capacity_(capacity), fill_(static_cast<std::size_t>(max_depth) + 1, 0) {
+Waves::Waves(uint capacity, int max_depth)
+    : capacity_(capacity), fill_(static_cast<std::size_t>(max_depth) + 1, 0), counts_(fill_.size()) {
     assert(capacity >= 1 && max_depth >= 0);
 }
 
@@ -17,6 +18,9 @@ void Waves::push(int depth, std::uint64_t count) {
         throw QueueOverflow(fmt::format("{} rays were pushed into the queue of depth {}, which holds {} and has {}",
                                         count, depth, queue_size(depth), fill));
     fill = static_cast<uint>(count);
+    QueueCounts& counts = counts_[static_cast<std::size_t>(depth)];
+    counts.pushed += count;
+    counts.high_water = std::max(counts.high_water, fill);
 }
 
 std::optional<Batch> Waves::next() {
@@ -25,9 +29,23 @@ std::optional<Batch> Waves::next() {
         if (fill == 0) continue;
         const uint count = std::min(fill, capacity_);
         fill -= count;
+        QueueCounts& counts = counts_[static_cast<std::size_t>(depth)];
+        counts.popped += count;
+        ++counts.batches;
         return Batch{depth, fill, count};
     }
     return std::nullopt;
+}
+
+void Waves::start() {
+    std::ranges::fill(counts_, QueueCounts{});
+}
+
+void Waves::check_drained() const {
+    for (int depth = 0; depth <= max_depth(); ++depth)
+        if (counts(depth).pushed != counts(depth).popped)
+            throw QueueMismatch(fmt::format("{} rays were pushed into the queue of depth {} and {} popped",
+                                            counts(depth).pushed, depth, counts(depth).popped));
 }
 
 }  // namespace raymill

@@ -16,11 +16,25 @@ class QueueOverflow : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// The books of the queues do not balance: some item was pushed and never popped, or popped twice. A defect as well.
+class QueueMismatch : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
 /// Rays [first, first + count) of the queue of `depth`.
 struct Batch {
     int depth = 0;
     uint first = 0;
     uint count = 0;
+};
+
+/// What went through the queue of a depth.
+struct QueueCounts {
+    std::uint64_t pushed = 0;
+    std::uint64_t popped = 0;
+    std::uint64_t batches = 0;
+    uint high_water = 0;  // most rays that it ever held
 };
 
 /// Fill levels of the queues. A batch is taken from the end of the deepest queue that is not empty; since all deeper
@@ -33,15 +47,25 @@ class Waves {
     /// Rays that the queue of a depth holds.
     std::uint64_t queue_size(int depth) const { return depth == 0 ? capacity_ : 2 * std::uint64_t{capacity_}; }
 
-    /// Rays were pushed into the queue of depth `depth`, which was empty. Throws QueueOverflow if they cannot have fitted.
+    /// Rays were pushed into the queue of depth `depth`, which was empty. Throws QueueOverflow if they cannot have
+    /// fitted.
     void push(int depth, std::uint64_t count);
 
     /// Takes the next batch; nothing when all queues are empty.
     std::optional<Batch> next();
 
+    int max_depth() const { return static_cast<int>(fill_.size()) - 1; }
+    /// Since construction or the last start().
+    const QueueCounts& counts(int depth) const { return counts_.at(static_cast<std::size_t>(depth)); }
+    /// Forgets the counts.
+    void start();
+    /// Throws QueueMismatch unless every ray that was pushed has been popped.
+    void check_drained() const;
+
   private:
     uint capacity_;
     std::vector<uint> fill_;  // rays waiting, by depth
+    std::vector<QueueCounts> counts_;
 };
 
 }  // namespace raymill

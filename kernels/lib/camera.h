@@ -4,65 +4,101 @@
 
 #include "lib/sampling.h"
 
+/// A place in the order of camera samples: tiles of TILE x TILE pixels row by row, in a tile all pixels of one sample
+/// after the other, so that 64 rays in a row are neighbours. Tiles at the right and bottom edge are smaller; none is
+/// padded.
 typedef struct {
-    uint x, y;    // in the whole image, from the top left
-    uint pixel;   // in the rendered window
-    uint sample;  // in [0, spp)
-    uint path;
-} CameraSample;
+    uint tile_x, tile_y;  // first pixel of the tile, in the rendered window
+    uint columns, rows;   // of the tile
+    uint sample;          // in [0, spp)
+    uint row, column;     // in the tile
+} CameraCursor;
 
-/// Sample number `index` of the window: tiles of TILE x TILE pixels row by row, in a tile all pixels of one sample after
-/// the other, so that 64 rays in a row are neighbours. Tiles at the right and bottom edge are smaller; none is padded.
-static inline CameraSample camera_sample_at(ulong index, constant CameraRecord* camera) {
+/// Camera sample number `index` of the window.
+static inline CameraCursor camera_cursor(ulong index, constant CameraRecord* camera) {
     const uint width = camera->crop[2], height = camera->crop[3], spp = camera->spp;
     const ulong row_samples = (ulong)width * TILE * spp;
-    const uint tile_y = (uint)(index / row_samples) * TILE;
-    const uint rows = min((uint)TILE, height - tile_y);
-    const ulong in_row = index - (ulong)tile_y * width * spp;  // a row of tiles may hold more than 2^32
-
-    const uint full_tile = TILE * rows * spp;
-    const uint tile_x = (uint)(in_row / full_tile) * TILE;
-    const uint columns = min((uint)TILE, width - tile_x);
-    const uint in_tile = (uint)(in_row - (ulong)(tile_x / TILE) * full_tile);
-
-    const uint tile_pixels = columns * rows;
-    const bool whole = tile_pixels == TILE * TILE;  // divisions by constants
-    const uint sample = whole ? in_tile / (TILE * TILE) : in_tile / tile_pixels;
-    const uint in_sample = in_tile - sample * tile_pixels;
-    const uint row = whole ? in_sample / TILE : in_sample / columns;
-    const uint x = tile_x + in_sample - row * columns;
-    const uint y = tile_y + row;
-
-    CameraSample s;
-    s.x = camera->crop[0] + x;
-    s.y = camera->crop[1] + y;
-    s.pixel = y * width + x;
-    s.sample = sample;
-    s.path = path_camera(camera->seed, s.y * camera->width + s.x);
-    return s;
+    CameraCursor c;
+    c.tile_y = (uint)(index / row_samples) * TILE;
+    c.rows = min((uint)TILE, height - c.tile_y);
+    const ulong in_row = index - (ulong)c.tile_y * width * spp;  // a row of tiles may hold more than 2^32
+    const uint full_tile = TILE * c.rows * spp;
+    c.tile_x = (uint)(in_row / full_tile) * TILE;
+    c.columns = min((uint)TILE, width - c.tile_x);
+    const uint in_tile = (uint)(in_row - (ulong)(c.tile_x / TILE) * full_tile);
+    c.sample = in_tile / (c.columns * c.rows);
+    const uint in_sample = in_tile - c.sample * c.columns * c.rows;
+    c.row = in_sample / c.columns;
+    c.column = in_sample - c.row * c.columns;
+    return c;
 }
 
-/// The ray through the sample's point of the film plane: the pixel's centre with one sample, stratified with more;
-/// through a point of the lens if there is one. direction is unit.
-static inline void camera_ray(constant CameraRecord* camera, CameraSample s, float3* origin, float3* direction) {
-    const float2 jitter =
-        camera->spp == 1 ? (float2)(0.5f) : stratified_sample(s.sample, s.path, RANDOM_PIXEL);
-    const float x = fma(((float)s.x + jitter.x) / (float)camera->width, 2.0f, -1.0f);
-    const float y = fma(((float)s.y + jitter.y) / (float)camera->height, -2.0f, 1.0f);
-    const float3 eye = constant3(camera->eye), forward = constant3(camera->forward);
-    const float3 across = fma3(x, constant3(camera->right), constant3(camera->up) * y);
+/// The next sample. Past the last one it means nothing.
+static inline void camera_step(CameraCursor* c, constant CameraRecord* camera) {
+    if (++c->column < c->columns) return;
+    c->column = 0;
+    if (++c->row < c->rows) return;
+    c->row = 0;
+    if (++c->sample < camera->spp) return;
+    c->sample = 0;
+    c->tile_x += TILE;
+    if (c->tile_x >= camera->crop[2]) {
+        c->tile_x = 0;
+        c->tile_y += TILE;
+        c->rows = min((uint)TILE, camera->crop[3] - c->tile_y);
+    }
+    c->columns = min((uint)TILE, camera->crop[2] - c->tile_x);
+}
 
-    float3 from = camera->orthographic ? eye + across : eye;
-    float3 along = camera->orthographic ? forward : forward + across;
+/// Sixteen camera samples.
+typedef struct {
+    uint x[LANES], y[LANES];  // in the whole image, from the top left
+    uint pixel[LANES];        // in the rendered window
+    uint sample[LANES];
+    uint path[LANES];
+} CameraSamples;
+
+/// Takes the next samples. A lane may lie past the last sample: its ray is not to be used.
+static inline void camera_samples(CameraCursor* cursor, constant CameraRecord* camera, CameraSamples* s) {
+    for (uint lane = 0; lane < LANES; ++lane) {
+        const uint x = cursor->tile_x + cursor->column, y = cursor->tile_y + cursor->row;
+        s->x[lane] = camera->crop[0] + x;
+        s->y[lane] = camera->crop[1] + y;
+        s->pixel[lane] = y * camera->crop[2] + x;
+        s->sample[lane] = cursor->sample;
+        camera_step(cursor, camera);
+    }
+    const uint seed = camera->seed, width = camera->width;
+    for (uint lane = 0; lane < LANES; ++lane) s->path[lane] = path_camera(seed, s->y[lane] * width + s->x[lane]);
+}
+
+/// The rays through the samples' points of the film plane: the pixel's centre with one sample, stratified with more;
+/// through a point of the lens if there is one. Directions are unit.
+static inline void camera_rays(constant CameraRecord* camera, const CameraSamples* s, Lanes3* origin,
+                               Lanes3* direction) {
+    float16 jitter_x = (float16)(0.5f), jitter_y = (float16)(0.5f);
+    if (camera->spp != 1) stratified_samples(s->sample, s->path, RANDOM_PIXEL, &jitter_x, &jitter_y);
+    const float16 column = convert_float16(as_int16(vload16(0, s->x))),
+                  row = convert_float16(as_int16(vload16(0, s->y)));
+    const float16 x = fma((column + jitter_x) / (float)camera->width, (float16)(2.0f), (float16)(-1.0f));
+    const float16 y = fma((row + jitter_y) / (float)camera->height, (float16)(-2.0f), (float16)(1.0f));
+    const float3 right = constant3(camera->right), up = constant3(camera->up);
+    const Lanes3 eye = lanes_of(constant3(camera->eye)), forward = lanes_of(constant3(camera->forward));
+    const Lanes3 across = lanes_fma(x, lanes_of(right), lanes_scale(lanes_of(up), y));
+
+    Lanes3 from = camera->orthographic ? lanes_add(eye, across) : eye;
+    Lanes3 along = camera->orthographic ? forward : lanes_add(forward, across);
     if (camera->lens_radius > 0.0f) {
-        const float2 lens = concentric_disk(stratified_sample(s.sample, s.path, RANDOM_LENS));
-        const float3 shift =
-            fma3(lens.x, unit3(constant3(camera->right)), unit3(constant3(camera->up)) * lens.y) * camera->lens_radius;
-        from += shift;
-        along = fma3(camera->focus, along, -shift);
+        float16 lens_x, lens_y;
+        stratified_samples(s->sample, s->path, RANDOM_LENS, &lens_x, &lens_y);
+        lanes_disk(lens_x, lens_y, &lens_x, &lens_y);
+        const Lanes3 on_disk = lanes_fma(lens_x, lanes_of(unit3(right)), lanes_scale(lanes_of(unit3(up)), lens_y));
+        const Lanes3 shift = lanes_scale(on_disk, (float16)(camera->lens_radius));
+        from = lanes_add(from, shift);
+        along = lanes_fma((float16)(camera->focus), along, lanes_minus(shift));
     }
     *origin = from;
-    *direction = unit3(along);
+    *direction = lanes_unit(along);
 }
 
 #endif

@@ -1,4 +1,4 @@
-// What a surface does with light: colours, the Phong and Blinn terms, and the split into secondary rays.
+// What a surface does with light: colours, and the split into secondary rays.
 #ifndef RAYMILL_MATERIAL_H
 #define RAYMILL_MATERIAL_H
 
@@ -39,22 +39,6 @@ static inline float3 diffuse_color(const World* world, global const Material* ma
     const float3 color = odd ? load3(material->checker) : load3(material->diffuse);
     if (material->diffuse_texture == NO_INDEX) return color;
     return color * sample_texture(world, material->diffuse_texture, s->uv);
-}
-
-/// max(n.l, 0) and the highlight's cosine to the power of the shininess, both 0 where the light is behind the normal.
-/// Unit vectors; l towards the light, v towards the eye.
-static inline float2 phong_terms(global const Material* material, float3 n, float3 l, float3 v) {
-    const float cosine = dot3(n, l);
-    if (!(cosine > 0.0f)) return (float2)(0.0f);
-    float highlight;
-    if (material->flags & MATERIAL_BLINN) {
-        const float3 sum = l + v;
-        const float length = length3(sum);
-        highlight = length > 0.0f ? dot3(n, sum) / length : 0.0f;
-    } else {
-        highlight = dot3(v, fma3(2.0f * cosine, n, -l));
-    }
-    return (float2)(cosine, power(fmax(highlight, 0.0f), material->shininess));
 }
 
 /// Unpolarised Fresnel reflectance in [0, 1]; 1 under total internal reflection.

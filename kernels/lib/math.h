@@ -105,26 +105,6 @@ static inline float3 exp_minus(float3 x) {
                     exp2_exact(x.z * -1.44269504088896f));
 }
 
-/// (cos, sin) of the angle `turns` * 2 pi, for turns in [0, 1]; absolute error below 2e-7.
-static inline float2 cos_sin_turns(float turns) {
-    const float quarter = floor(fma(turns, 4.0f, 0.5f));
-    const float a = (turns - quarter * 0.25f) * (2.0f * PI);  // [-pi/4, pi/4]
-    const float a2 = a * a;
-    float s = 1.0f / 362880.0f;
-    s = fma(s, a2, -1.0f / 5040.0f);
-    s = fma(s, a2, 1.0f / 120.0f);
-    s = fma(s, a2, -1.0f / 6.0f);
-    s = fma(s * a2, a, a);
-    float c = -1.0f / 3628800.0f;
-    c = fma(c, a2, 1.0f / 40320.0f);
-    c = fma(c, a2, -1.0f / 720.0f);
-    c = fma(c, a2, 1.0f / 24.0f);
-    c = fma(c, a2, -0.5f);
-    c = fma(c, a2, 1.0f);
-    const int q = (int)quarter & 3;
-    return q == 0 ? (float2)(c, s) : q == 1 ? (float2)(-s, c) : q == 2 ? (float2)(-c, -s) : (float2)(s, -c);
-}
-
 /// Angle of (x, y) in [-pi, pi]; absolute error below 5e-7. (0, 0) gives 0.
 static inline float angle_of(float y, float x) {
     const float ax = fabs(x), ay = fabs(y);
@@ -144,33 +124,6 @@ static inline float angle_of(float y, float x) {
     if (ay > ax) angle = 0.5f * PI - angle;
     if (x < 0.0f) angle = PI - angle;
     return y < 0.0f ? -angle : angle;
-}
-
-/// Two unit vectors that make a right-handed basis with the unit vector n.
-/// Source: Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 2017.
-static inline void tangents(float3 n, float3* t, float3* u) {
-    const float sign = copysign(1.0f, n.z);
-    const float a = -1.0f / (sign + n.z);
-    const float b = n.x * n.y * a;
-    *t = (float3)(fma(sign * n.x * n.x, a, 1.0f), sign * b, -sign * n.x);
-    *u = (float3)(b, fma(n.y * n.y, a, sign), -n.y);
-}
-
-/// The unit square to the unit disk, area preserving.
-/// Source: Shirley and Chiu, "A Low Distortion Map Between Disk and Square", JGT 1997.
-static inline float2 concentric_disk(float2 square) {
-    const float a = fma(square.x, 2.0f, -1.0f);
-    const float b = fma(square.y, 2.0f, -1.0f);
-    if (a == 0.0f && b == 0.0f) return (float2)(0.0f);
-    float r, turns;
-    if (fabs(a) > fabs(b)) {
-        r = a;
-        turns = b / a * 0.125f;
-    } else {
-        r = b;
-        turns = 0.25f - a / b * 0.125f;
-    }
-    return cos_sin_turns(turns < 0.0f ? turns + 1.0f : turns) * r;
 }
 
 #endif

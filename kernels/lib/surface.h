@@ -95,6 +95,13 @@ static inline uint material_of(const World* world, uint primitive) {
     return index < sphere_count ? world->spheres[index].material : world->planes[index - sphere_count].material;
 }
 
+/// Whether the hit's material spawns rays at all; most do not, and need no more work.
+static inline bool may_spawn(const World* world, uint primitive) {
+    if (primitive == NO_INDEX) return false;
+    global const Material* material = world->materials + material_of(world, primitive);
+    return material->reflection + material->transmission > 0.0f;
+}
+
 /// Index of the object that a primitive belongs to.
 static inline uint object_of(const World* world, uint primitive) {
     const uint triangle_count = world->constants->triangle_count, sphere_count = world->constants->sphere_count;

@@ -138,15 +138,12 @@ struct StreamCall {
     }
 };
 
-/// N rays a call. Lanes beyond the last ray repeat it with an empty range.
-template <int N, class PacketRays, class PacketQuery, auto intersect, auto occluded>
-struct PacketCall {
+/// Rays in packets of N, as arrays of each component. Lanes beyond the last ray repeat it with an empty range.
+template <int N, class PacketRays, class PacketQuery>
+struct PacketLayout {
     using Rays = PacketRays;
     using Hits = HitsOf<N>;
     static constexpr std::size_t width = N;
-    static std::string name(bool coherent) {
-        return fmt::format("embree {} {}", N, coherent ? "coherent" : "incoherent");
-    }
 
     static Rays pack(std::span<const BenchRay> rays) {
         Rays packet{};
@@ -164,21 +161,45 @@ struct PacketCall {
         return packet;
     }
 
+    static PacketQuery query_of(const Rays& rays) {
+        PacketQuery query;
+        query.ray = rays;
+        std::fill_n(query.hit.geomID, N, RTC_INVALID_GEOMETRY_ID);
+        std::fill_n(query.hit.instID[0], N, RTC_INVALID_GEOMETRY_ID);
+        return query;
+    }
+
+    static void store_hits(const PacketQuery& query, std::uint32_t sphere_offset, Hits& hits) {
+        std::copy_n(query.ray.tfar, N, hits.t);
+        std::copy_n(query.hit.u, N, hits.u);
+        std::copy_n(query.hit.v, N, hits.v);
+        for (int lane = 0; lane < N; ++lane)
+            hits.primitive[lane] = primitive_of(query.hit.geomID[lane], query.hit.primID[lane], sphere_offset);
+    }
+
+    static void store_blocked(const Rays& rays, std::uint8_t* blocked) {
+        for (int lane = 0; lane < N; ++lane) blocked[lane] = rays.tfar[lane] < 0;
+    }
+};
+
+/// N rays a call.
+template <int N, class PacketRays, class PacketQuery, auto intersect, auto occluded>
+struct PacketCall : PacketLayout<N, PacketRays, PacketQuery> {
+    using Layout = PacketLayout<N, PacketRays, PacketQuery>;
+    using Rays = typename Layout::Rays;
+    using Hits = typename Layout::Hits;
+    static std::string name(bool coherent) {
+        return fmt::format("embree {} {}", N, coherent ? "coherent" : "incoherent");
+    }
+
     static void closest(RTCScene scene, RTCIntersectContext& context, std::uint32_t sphere_offset, const Rays* rays,
                         std::size_t count, Hits* hits) {
         alignas(64) int valid[N];
         std::fill_n(valid, N, -1);
         for (std::size_t i = 0; i < count; ++i) {
-            PacketQuery query;
-            query.ray = rays[i];
-            std::fill_n(query.hit.geomID, N, RTC_INVALID_GEOMETRY_ID);
-            std::fill_n(query.hit.instID[0], N, RTC_INVALID_GEOMETRY_ID);
+            PacketQuery query = Layout::query_of(rays[i]);
             intersect(valid, scene, &context, &query);
-            std::copy_n(query.ray.tfar, N, hits[i].t);
-            std::copy_n(query.hit.u, N, hits[i].u);
-            std::copy_n(query.hit.v, N, hits[i].v);
-            for (int lane = 0; lane < N; ++lane)
-                hits[i].primitive[lane] = primitive_of(query.hit.geomID[lane], query.hit.primID[lane], sphere_offset);
+            Layout::store_hits(query, sphere_offset, hits[i]);
         }
     }
     static void any(RTCScene scene, RTCIntersectContext& context, const Rays* rays, std::size_t count,
@@ -188,11 +209,41 @@ struct PacketCall {
         for (std::size_t i = 0; i < count; ++i) {
             Rays packet = rays[i];
             occluded(valid, scene, &context, &packet);
-            for (int lane = 0; lane < N; ++lane) blocked[i * width + lane] = packet.tfar[lane] < 0;
+            Layout::store_blocked(packet, blocked + i * N);
         }
     }
 };
 
+/// Streams of STREAM_RAYS rays in packets of 16.
+struct PacketStreamCall : PacketLayout<16, RTCRay16, RTCRayHit16> {
+    static constexpr std::size_t stream = STREAM_RAYS / width;
+    static std::string name(bool coherent) { return fmt::format("embree NM {}", coherent ? "coherent" : "incoherent"); }
+
+    static void closest(RTCScene scene, RTCIntersectContext& context, std::uint32_t sphere_offset, const Rays* rays,
+                        std::size_t count, Hits* hits) {
+        RTCRayHit16 queries[stream];
+        for (std::size_t first = 0; first < count; first += stream) {
+            const std::size_t n = std::min(stream, count - first);
+            for (std::size_t i = 0; i < n; ++i) queries[i] = query_of(rays[first + i]);
+            rtcIntersectNM(scene, &context, reinterpret_cast<RTCRayHitN*>(queries), width, static_cast<unsigned>(n),
+                           sizeof(RTCRayHit16));
+            for (std::size_t i = 0; i < n; ++i) store_hits(queries[i], sphere_offset, hits[first + i]);
+        }
+    }
+    static void any(RTCScene scene, RTCIntersectContext& context, const Rays* rays, std::size_t count,
+                    std::uint8_t* blocked) {
+        RTCRay16 packets[stream];
+        for (std::size_t first = 0; first < count; first += stream) {
+            const std::size_t n = std::min(stream, count - first);
+            std::copy_n(rays + first, n, packets);
+            rtcOccludedNM(scene, &context, reinterpret_cast<RTCRayN*>(packets), width, static_cast<unsigned>(n),
+                          sizeof(RTCRay16));
+            for (std::size_t i = 0; i < n; ++i) store_blocked(packets[i], blocked + (first + i) * width);
+        }
+    }
+};
+
+using PacketCall4 = PacketCall<4, RTCRay4, RTCRayHit4, rtcIntersect4, rtcOccluded4>;
 using PacketCall8 = PacketCall<8, RTCRay8, RTCRayHit8, rtcIntersect8, rtcOccluded8>;
 using PacketCall16 = PacketCall<16, RTCRay16, RTCRayHit16, rtcIntersect16, rtcOccluded16>;
 

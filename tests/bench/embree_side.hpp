@@ -13,20 +13,33 @@
 
 namespace raymill::bench {
 
+/// Of Embree's hierarchy: high splits triangles in space, and takes longer to build.
+enum class Quality { medium, high };
+const char* name_of(Quality quality);
+
+// Ids of Embree's geometries; primitives in them count as in the scene.
+inline constexpr unsigned EMBREE_TRIANGLES = 0;
+inline constexpr unsigned EMBREE_SPHERES = 1;
+
 /// Shares the scene's arrays of triangles: it must outlive this.
 class EmbreeSide {
   public:
     /// threads: of its builder; 0 for all. robust: its watertight mode, which ours always is.
     EmbreeSide(const Scene& scene, unsigned threads, bool robust);
 
-    /// Builds afresh, with medium quality, and keeps the result.
-    Build build();
+    /// Builds a hierarchy of this quality afresh, and keeps it beside those of other qualities. occluded_filter: called
+    /// where occlusion rays hit anything.
+    Build build(Quality quality, RTCFilterFunctionN occluded_filter = nullptr);
 
-    /// Closest hits of `rays`, one by one.
+    /// The first hierarchy that was built.
+    RTCScene scene() const { return built_.front().scene.get(); }
+
+    /// Closest hits of `rays`, one by one, by the first hierarchy that was built.
     std::vector<CameraHit> closest_hits(std::span<const BenchRay> rays) const;
 
-    /// Calls of 1, 8 and 16 rays and streams, each told that the rays are coherent and that they are not. Packets that
-    /// this processor has no vectors for are left out. Each reads rays in the layout that the call takes, and writes
+    /// Calls of 1, 4, 8 and 16 rays, and streams of single rays (1M) and of packets (NM), each on every hierarchy built
+    /// and told that the rays are coherent and that they are not. Packets that this processor has no vectors for are
+    /// left out. Each reads rays in the layout that the call takes, and writes
     /// distance, weights and id, or one byte of visibility. Must not outlive this.
     std::vector<Variant> variants(const RaySet& set) const;
 
@@ -38,15 +51,20 @@ class EmbreeSide {
         void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
     };
 
-    void attach_triangles(RTCScene scene) const;
-    void attach_spheres(RTCScene scene) const;
+    struct Hierarchy {
+        Quality quality;
+        std::unique_ptr<RTCSceneTy, ReleaseScene> scene;
+    };
+
+    void attach_triangles(RTCScene scene, RTCFilterFunctionN occluded_filter) const;
+    void attach_spheres(RTCScene scene, RTCFilterFunctionN occluded_filter) const;
 
     const Scene& scene_;
     std::vector<glm::vec4> spheres_;  // Embree loads sixteen aligned bytes a sphere: ours do not do
     bool robust_;
     std::atomic<std::ptrdiff_t> bytes_ = 0;  // that Embree holds; before the device, which reports to it
     std::unique_ptr<RTCDeviceTy, ReleaseDevice> device_;
-    std::unique_ptr<RTCSceneTy, ReleaseScene> built_;
+    std::vector<Hierarchy> built_;
 };
 
 }  // namespace raymill::bench

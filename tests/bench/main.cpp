@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 #include <optional>
 
 #include "report.hpp"
@@ -21,17 +22,21 @@ constexpr int bad_input = 2;
 
 struct Arguments {
     std::vector<std::string> scenes;
-    double triangles = 1e6;
+    std::optional<double> triangles;  // 1e6, or 1e7 for scaling
+    bool scaling = false;
     std::string mesh;
     std::vector<double> eye, look_at;
     std::optional<double> fov;
     std::string size;
-    std::string traversal = "both";
+    std::string traversal = "all";
+    std::string quality = "both";
     std::string device;
     std::string json;
     bool list = false;
     MeasureOptions measure;
 };
+
+const std::map<std::string, Clock> clocks = {{"wall", Clock::wall}, {"processor", Clock::processor}};
 
 void add_options(CLI::App& app, Arguments& a) {
     std::vector<std::string> names;
@@ -39,8 +44,12 @@ void add_options(CLI::App& app, Arguments& a) {
     app.add_option("--scene", a.scenes, "Scenes that the program makes; all of them without this and --mesh")
         ->check(CLI::IsMember(names));
     app.add_flag("--list", a.list, "Say what the scenes are");
-    app.add_option("--triangles", a.triangles, "Triangles of each made scene, about")->check(CLI::Range(100.0, 5e7));
-    app.add_option("--mesh", a.mesh, "An OBJ model, or a scene file")->check(CLI::ExistingFile);
+    app.add_option("--triangles", a.triangles,
+                   "Triangles of each made scene, about (default 1e6); the largest for --scaling (default 1e7)")
+        ->check(CLI::Range(100.0, 5e7));
+    app.add_flag("--scaling", a.scaling,
+                 "Instead: how the time of a ray grows with the made scenes, threads, queues and images")
+        ->excludes(app.add_option("--mesh", a.mesh, "A model or a scene file")->check(CLI::ExistingFile));
     app.add_option("--eye", a.eye, "Camera of --mesh: x y z; without it the model is framed")->expected(3);
     app.add_option("--look-at", a.look_at, "What it looks at: x y z")->expected(3);
     app.add_option("--fov", a.fov, "Vertical field of view in degrees")->check(CLI::Range(1.0, 170.0));
@@ -49,9 +58,15 @@ void add_options(CLI::App& app, Arguments& a) {
         ->check(CLI::Range(1, 1000));
     app.add_option("--builds", a.measure.builds, "Times that each hierarchy is built")->check(CLI::Range(1, 100));
     app.add_option("--traversal", a.traversal, "Which of our kernels")
-        ->check(CLI::IsMember({"packet", "single", "both"}));
+        ->check(CLI::IsMember({"automatic", "packet", "single", "all"}));
+    static const std::map<std::string, BvhQuality> qualities = {{"fast", BvhQuality::fast}, {"high", BvhQuality::high}};
+    app.add_option("--bvh", a.measure.bvh, "Our hierarchy, fast or high")
+        ->transform(CLI::CheckedTransformer(qualities).description(""));
+    app.add_option("--quality", a.quality, "Of Embree's hierarchy")->check(CLI::IsMember({"medium", "high", "both"}));
     app.add_option("--device", a.device, "OpenCL device: index or part of its name");
     app.add_option("--threads", a.measure.threads, "Of either side; 0 for all")->check(CLI::Range(0u, 1024u));
+    app.add_option("--clock", a.measure.clock, "wall, or processor: time of all threads, for a busy machine")
+        ->transform(CLI::CheckedTransformer(clocks));
     app.add_flag("--robust", a.measure.robust, "Embree's watertight mode (ours always is)");
     app.add_option("--json", a.json, "Write the numbers to this file as well");
 }
@@ -79,9 +94,16 @@ BenchScene load_mesh(const Arguments& a) {
 }
 
 std::vector<Traversal> traversals(const std::string& choice) {
+    if (choice == "automatic") return {Traversal::automatic};
     if (choice == "packet") return {Traversal::packet};
     if (choice == "single") return {Traversal::single};
-    return {Traversal::packet, Traversal::single};
+    return {Traversal::automatic, Traversal::packet, Traversal::single};
+}
+
+std::vector<Quality> qualities(const std::string& choice) {
+    if (choice == "medium") return {Quality::medium};
+    if (choice == "high") return {Quality::high};
+    return {Quality::medium, Quality::high};
 }
 
 bool is_wanted(const Arguments& a, const std::string& scene) {
@@ -89,11 +111,29 @@ bool is_wanted(const Arguments& a, const std::string& scene) {
     return std::find(a.scenes.begin(), a.scenes.end(), scene) != a.scenes.end();
 }
 
+Circumstances circumstances_of(const Arguments& a, const DeviceInfo& device) {
+    return {device.name, device.driver, device.compute_units, RTC_VERSION_STRING, a.measure};
+}
+
+void run_scaling(const Arguments& a) {
+    const double largest = a.triangles.value_or(1e7);
+    if (largest < 1e4) throw UsageError("--scaling: give at least 10000 --triangles");
+    std::vector<ScalingTable> tables;
+    for (const Recipe& recipe : recipes())
+        if (is_wanted(a, recipe.name))
+            measure_scaling(recipe, {a.measure, a.device, largest}, [&](const ScalingTable& table) {
+                tables.push_back(table);
+                print_scaling(table);
+                std::fflush(stdout);
+            });
+    if (!a.json.empty())
+        write_json(a.json, circumstances_of(a, open_device(a.device, a.measure.threads).info), {}, tables);
+}
+
 /// Whether both sides agreed everywhere.
 bool run(const Arguments& a) {
     const RaymillKernels kernels(a.device, a.measure.threads, traversals(a.traversal));
-    const DeviceInfo& device = kernels.device().info;
-    const Circumstances circumstances{device.name, device.driver, device.compute_units, RTC_VERSION_STRING, a.measure};
+    const Circumstances circumstances = circumstances_of(a, kernels.device().info);
     print_heading(circumstances);
     std::vector<SceneResult> results;
     bool agreed = true;
@@ -107,10 +147,10 @@ bool run(const Arguments& a) {
                    bench.name, results.back().worst_difference(), ALLOWED_DIFFERENCE);
     };
     for (const Recipe& recipe : recipes())
-        if (is_wanted(a, recipe.name)) add(recipe.make(a.triangles));
+        if (is_wanted(a, recipe.name)) add(recipe.make(a.triangles.value_or(1e6)));
     if (!a.mesh.empty()) add(load_mesh(a));
     print_summary(results);
-    if (!a.json.empty()) write_json(a.json, circumstances, results);
+    if (!a.json.empty()) write_json(a.json, circumstances, results, {});
     return agreed;
 }
 
@@ -132,11 +172,16 @@ int main(int argc, char** argv) {
             return 0;
         }
         parse_size(arguments.size, arguments.measure);
+        arguments.measure.qualities = qualities(arguments.quality);
         // As the program does: workers that stay where they are. It must be set before OpenCL is loaded.
         setenv("POCL_AFFINITY", "1", 0);
         std::optional<tbb::global_control> limit;
         if (arguments.measure.threads > 0)
             limit.emplace(tbb::global_control::max_allowed_parallelism, arguments.measure.threads);
+        if (arguments.scaling) {
+            run_scaling(arguments);
+            return 0;
+        }
         return run(arguments) ? 0 : failed;
     } catch (const CLI::Success& success) {
         return app.exit(success);

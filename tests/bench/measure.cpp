@@ -1,23 +1,10 @@
 #include "measure.hpp"
 
 #include <algorithm>
-#include <chrono>
-#include <thread>
 
 namespace raymill::bench {
 
 namespace {
-
-/// Workers of the one side that still look for work would take a core from the other.
-constexpr std::chrono::milliseconds pause_between{2};
-
-double seconds_of(const std::function<void()>& work) {
-    std::this_thread::sleep_for(pause_between);
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-    return took.count();
-}
 
 double share_differing(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
     std::size_t differing = 0;
@@ -48,10 +35,11 @@ Comparison compare(const std::vector<Variant>& variants, bool any_hit) {
 }
 
 /// Seconds by variant and round.
-std::vector<std::vector<double>> time_rounds(const std::vector<Variant>& variants, int rounds) {
+std::vector<std::vector<double>> time_rounds(const std::vector<Variant>& variants, const MeasureOptions& options) {
     std::vector<std::vector<double>> seconds(variants.size());
-    for (int round = 0; round < rounds; ++round)
-        for (std::size_t i = 0; i < variants.size(); ++i) seconds[i].push_back(seconds_of(variants[i].trace));
+    for (int round = 0; round < options.rounds; ++round)
+        for (std::size_t i = 0; i < variants.size(); ++i)
+            seconds[i].push_back(seconds_of(variants[i].trace, options.clock));
     return seconds;
 }
 
@@ -64,14 +52,14 @@ std::size_t best_of_embree(const std::vector<Variant>& variants, const std::vect
     return best;
 }
 
-SetResult measure_set(const RaySet& set, RaymillSide& ours, const EmbreeSide& embree, int rounds) {
+SetResult measure_set(const RaySet& set, RaymillSide& ours, const EmbreeSide& embree, const MeasureOptions& options) {
     SetResult result{set.name, set.description, set.any_hit, set.rays.size(), 0, {}, {}};
     if (set.rays.empty()) return result;
     std::vector<Variant> variants = ours.variants(set);
     for (Variant& variant : embree.variants(set)) variants.push_back(std::move(variant));
     const Comparison comparison = compare(variants, set.any_hit);
     result.hitting = comparison.hitting;
-    const std::vector<std::vector<double>> seconds = time_rounds(variants, rounds);
+    const std::vector<std::vector<double>> seconds = time_rounds(variants, options);
     const std::size_t best = best_of_embree(variants, seconds);
     result.best = variants[best].name;
     for (std::size_t i = 0; i < variants.size(); ++i) {
@@ -86,41 +74,40 @@ SetResult measure_set(const RaySet& set, RaymillSide& ours, const EmbreeSide& em
     return result;
 }
 
-BuildResult build_result(const std::vector<Build>& builds, std::size_t primitives) {
+BuildResult build_result(const std::string& name, const std::vector<Build>& builds, std::size_t primitives) {
     std::vector<double> rates;
     for (const Build& build : builds) rates.push_back(static_cast<double>(primitives) * 1e-6 / build.seconds);
-    return {quartiles(rates), static_cast<double>(builds.back().bytes) / static_cast<double>(primitives)};
+    return {name, quartiles(rates), static_cast<double>(builds.back().bytes) / static_cast<double>(primitives)};
 }
 
 }  // namespace
 
-double SceneResult::worst_difference() const {
-    double worst = 0;
-    for (const SetResult& set : sets)
-        for (const VariantResult& variant : set.variants) worst = std::max(worst, variant.differing);
-    return worst;
-}
-
 SceneResult measure(const BenchScene& bench, const RaymillKernels& kernels, const MeasureOptions& options) {
     const Scene& scene = bench.scene;
-    RaymillHierarchy hierarchy(scene, options.threads);
+    RaymillHierarchy fast(scene, {options.threads, BvhQuality::fast}), high(scene, {options.threads, BvhQuality::high});
     EmbreeSide embree(scene, options.threads, options.robust);
-    std::vector<Build> ours, theirs;
+    std::vector<Build> ours_fast, ours_high;
+    std::vector<std::vector<Build>> theirs(options.qualities.size());
     for (int i = 0; i < options.builds; ++i) {
-        ours.push_back(hierarchy.build());
-        theirs.push_back(embree.build());
+        ours_fast.push_back(fast.build());
+        ours_high.push_back(high.build());
+        for (std::size_t q = 0; q < theirs.size(); ++q) theirs[q].push_back(embree.build(options.qualities[q]));
     }
-    SceneResult result{bench.name, scene.triangles.size(), scene.spheres.size(), {}, {}, {}, {}};
+    SceneResult result{bench.name, scene.triangles.size(), scene.spheres.size(), {}, {}, {}};
     const std::size_t primitives = result.triangles + result.spheres;
-    result.ours = build_result(ours, primitives);
-    result.embree = build_result(theirs, primitives);
+    result.builds.push_back(build_result("raymill fast", ours_fast, primitives));
+    result.builds.push_back(build_result("raymill high", ours_high, primitives));
+    for (std::size_t q = 0; q < theirs.size(); ++q)
+        result.builds.push_back(
+            build_result(std::string("embree ") + name_of(options.qualities[q]), theirs[q], primitives));
+    const RaymillHierarchy& hierarchy = options.bvh == BvhQuality::fast ? fast : high;
     result.statistics = hierarchy.bvh().statistics;
 
     RaymillSide side(kernels, scene, hierarchy.bvh());
     const RaySet camera = camera_rays(scene.camera, options.width, options.height);
-    result.sets.push_back(measure_set(camera, side, embree, options.rounds));
+    result.sets.push_back(measure_set(camera, side, embree, options));
     for (const RaySet& set : bounced_rays(bench, camera, embree.closest_hits(camera.rays)))
-        result.sets.push_back(measure_set(set, side, embree, options.rounds));
+        result.sets.push_back(measure_set(set, side, embree, options));
     return result;
 }
 

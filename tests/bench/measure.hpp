@@ -7,6 +7,7 @@
 #include "embree_side.hpp"
 #include "raymill_side.hpp"
 #include "statistics.hpp"
+#include "stopwatch.hpp"
 
 namespace raymill::bench {
 
@@ -33,6 +34,7 @@ struct SetResult {
 };
 
 struct BuildResult {
+    std::string name;
     Quartiles mprimitives;  // millions of triangles and spheres a second
     double bytes_a_primitive = 0;
 };
@@ -41,7 +43,7 @@ struct SceneResult {
     std::string name;
     std::size_t triangles = 0;
     std::size_t spheres = 0;
-    BuildResult ours, embree;
+    std::vector<BuildResult> builds;  // ours and Embree's by quality
     BvhStatistics statistics;
     std::vector<SetResult> sets;
 
@@ -55,11 +57,26 @@ struct MeasureOptions {
     int rounds = 11;
     int builds = 3;
     unsigned threads = 0;  // 0: all
-    bool robust = false;   // Embree's watertight mode
+    Clock clock = Clock::wall;
+    BvhQuality bvh = BvhQuality::high;                                  // of our hierarchy
+    bool robust = false;                                                // Embree's watertight mode
+    std::vector<Quality> qualities = {Quality::medium, Quality::high};  // of Embree's hierarchies, at least one
 };
 
-/// Builds both hierarchies `builds` times in turn, then measures each set of rays: one trace of every variant to
-/// compare the results, and `rounds` rounds in which each variant runs once, by the wall clock.
+/// A set's ratio of what the renderer chooses by itself to Embree's best, over scenes.
+struct SetSummary {
+    std::string set;
+    double geometric_mean = 0;
+    double worst = 0;
+    std::string worst_scene;
+};
+
+/// One a set, in the order in which they first occur, of the medians of the variant AUTOMATIC; nothing of sets in which
+/// it did not run.
+std::vector<SetSummary> summarise(const std::vector<SceneResult>& scenes);
+
+/// Builds all hierarchies `builds` times in turn, then measures each set of rays: one trace of every variant to
+/// compare the results, and `rounds` rounds in which each variant runs once.
 SceneResult measure(const BenchScene& bench, const RaymillKernels& kernels, const MeasureOptions& options);
 
 }  // namespace raymill::bench

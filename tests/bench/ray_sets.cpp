@@ -16,9 +16,10 @@ glm::dvec3 position(const Scene& scene, std::uint32_t vertex) {
     return {p[0], p[1], p[2]};
 }
 
-/// A point of a surface, lifted off it, and the normal on the side that the ray came from.
+/// A point of a surface, lifted off it to either side, and the normal on the side that the ray came from.
 struct Lifted {
-    glm::dvec3 point;
+    glm::dvec3 point;  // on that side
+    glm::dvec3 behind;
     glm::dvec3 normal;
 };
 
@@ -38,7 +39,8 @@ Lifted surface_at(const Scene& scene, const BenchRay& ray, const CameraHit& hit)
     }
     if (glm::dot(normal, direction) > 0) normal = -normal;
     const double far = std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z), double{hit.t}});
-    return {point + 0x1p-16 * far * normal, normal};
+    const glm::dvec3 lift = 0x1p-16 * far * normal;
+    return {point + lift, point - lift, normal};
 }
 
 /// Two unit vectors square to a unit one and each other.
@@ -52,6 +54,12 @@ glm::dvec3 cosine_direction(const glm::dvec3& normal, Random& random) {
     const double r2 = random.uniform(), angle = 2 * glm::pi<double>() * random.uniform();
     const auto [u, v] = tangents(normal);
     return glm::normalize(std::sqrt(r2) * (std::cos(angle) * u + std::sin(angle) * v) + std::sqrt(1 - r2) * normal);
+}
+
+/// Snell's law on entering from air: the tangential part is scaled, the normal part follows from unit length.
+glm::dvec3 refracted_direction(const glm::dvec3& in, const glm::dvec3& normal) {
+    const glm::dvec3 tangential = (in - glm::dot(in, normal) * normal) / GLASS_INDEX;
+    return glm::normalize(tangential - std::sqrt(1 - glm::dot(tangential, tangential)) * normal);
 }
 
 /// Nothing where the target lies behind the surface: no renderer would send that ray.
@@ -87,8 +95,9 @@ std::vector<RaySet> bounced_rays(const BenchScene& bench, const RaySet& camera, 
     std::vector<RaySet> sets = {{"S", "shadow rays to a point", true, {}, {}},
                                 {"A", "shadow rays to an area", true, {}, {}},
                                 {"R", "mirrored rays", false, {}, {}},
+                                {"T", "rays through glass", false, {}, {}},
                                 {"D", "diffuse bounces", false, {}, {}}};
-    RaySet &to_point = sets[0], &to_area = sets[1], &mirrored = sets[2], &diffuse = sets[3];
+    RaySet &to_point = sets[0], &to_area = sets[1], &mirrored = sets[2], &through = sets[3], &diffuse = sets[4];
     const auto [side_u, side_v] = tangents(glm::dvec3(bench.lamp.axis));
     Random on_lamp(5), on_hemisphere(6);
     for (std::size_t i = 0; i < hits.size(); ++i) {
@@ -112,6 +121,7 @@ std::vector<RaySet> bounced_rays(const BenchScene& bench, const RaySet& camera, 
         if (glm::dot(glm::dvec3(bench.lamp.axis), at.point - on_area) > 0) add_shadow(to_area, on_area);
         const glm::dvec3 out = in - 2 * glm::dot(in, at.normal) * at.normal;
         mirrored.rays.push_back({glm::vec3(at.point), INFINITY, glm::vec3(glm::normalize(out))});
+        through.rays.push_back({glm::vec3(at.behind), INFINITY, glm::vec3(refracted_direction(in, at.normal))});
         diffuse.rays.push_back({glm::vec3(at.point), INFINITY, glm::vec3(cosine_direction(at.normal, on_hemisphere))});
     }
     return sets;

@@ -36,9 +36,12 @@ struct CameraHit {
 /// P: one ray a pixel through its centre, in tiles of TILE x TILE pixels. width and height are multiples of TILE.
 RaySet camera_rays(const Camera& camera, int width, int height);
 
-/// S, A, R and D, made from the hits of P.
+inline constexpr double GLASS_INDEX = 1.5;
+
+/// S, A, R, T and D, made from the hits of P.
 ///   S: shadow rays to the lamp's point           A: to random points of its square, from the side it shines on
-///   R: mirrored about the geometric normal       D: bounced, cosine-distributed, of a fixed seed
+///   R: mirrored about the geometric normal       T: refracted by it into a solid of GLASS_INDEX, from inside
+///   D: bounced, cosine-distributed, of a fixed seed
 /// Origins lie off the surface by 2^-16 of its distance from the world's origin or from the eye, whichever is larger,
 /// so that neither side can see the surface that a ray starts on.
 std::vector<RaySet> bounced_rays(const BenchScene& bench, const RaySet& camera, std::span<const CameraHit> hits);

@@ -37,6 +37,11 @@ std::vector<ShadowRay> shadow_queue(const RaySet& set) {
     return queue;
 }
 
+std::string name_of(Traversal traversal) {
+    if (traversal == Traversal::automatic) return AUTOMATIC;
+    return traversal == Traversal::packet ? "raymill packet" : "raymill single";
+}
+
 Film film_of(const Device& device, std::size_t pixels) {
     Film film{{device, pixels * FILM_CHANNELS}, {device, 1}};
     film.sums.clear(device);
@@ -50,7 +55,7 @@ Film film_of(const Device& device, std::size_t pixels) {
 Build RaymillHierarchy::build() {
     bvh_ = {};
     const auto start = std::chrono::steady_clock::now();
-    bvh_ = build_bvh(scene_.vertices, scene_.triangles, scene_.spheres, {threads_});
+    bvh_ = build_bvh(scene_.vertices, scene_.triangles, scene_.spheres, options_);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     return {took.count(), bvh_.nodes.size() * sizeof(BvhNode) + bvh_.triangle_blocks.size() * sizeof(TriangleBlock) +
                               bvh_.sphere_blocks.size() * sizeof(SphereBlock)};
@@ -59,8 +64,7 @@ Build RaymillHierarchy::build() {
 RaymillKernels::RaymillKernels(const std::string& device, unsigned threads, const std::vector<Traversal>& traversals)
     : device_(open_device(device, threads)) {
     for (const Traversal traversal : traversals)
-        kinds_.push_back({traversal == Traversal::packet ? "packet" : "single",
-                          std::make_unique<Stages>(device_, 0, "", traversal)});
+        kinds_.push_back({name_of(traversal), std::make_unique<Stages>(device_, 0, "", traversal)});
 }
 
 std::vector<Variant> RaymillSide::variants(const RaySet& set) {
@@ -89,7 +93,7 @@ std::vector<Variant> RaymillSide::closest_variants(const RaySet& set) {
             for (const Hit& hit : queues->hits.read(kernels_.device())) ids.push_back(hit.primitive);
             return ids;
         };
-        variants.push_back({"raymill " + kind.name, true, trace, found});
+        variants.push_back({kind.name, true, trace, found});
     }
     return variants;
 }
@@ -119,7 +123,7 @@ std::vector<Variant> RaymillSide::shadow_variants(const RaySet& set) {
             kernels_.device().queue.finish();
             return blocked;
         };
-        variants.push_back({"raymill " + kind.name, true, trace, found});
+        variants.push_back({kind.name, true, trace, found});
     }
     return variants;
 }

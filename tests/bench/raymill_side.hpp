@@ -11,16 +11,19 @@
 
 namespace raymill::bench {
 
+/// The variant that traces as the renderer does when nobody asks for a traversal.
+inline constexpr const char* AUTOMATIC = "raymill automatic";
+
 /// Builds the hierarchy and keeps the last one built.
 class RaymillHierarchy {
   public:
-    RaymillHierarchy(const Scene& scene, unsigned threads) : scene_(scene), threads_(threads) {}
+    RaymillHierarchy(const Scene& scene, BvhOptions options) : scene_(scene), options_(options) {}
     Build build();
     const Bvh& bvh() const { return bvh_; }
 
   private:
     const Scene& scene_;
-    unsigned threads_;
+    BvhOptions options_;
     Bvh bvh_;
 };
 

@@ -20,7 +20,9 @@ Json json_of(const Quartiles& q) {
 }
 
 Json json_of(const BuildResult& build) {
-    return {{"mprimitives_per_second", json_of(build.mprimitives)}, {"bytes_per_primitive", build.bytes_a_primitive}};
+    return {{"name", build.name},
+            {"mprimitives_per_second", json_of(build.mprimitives)},
+            {"bytes_per_primitive", build.bytes_a_primitive}};
 }
 
 Json json_of(const SetResult& set) {
@@ -38,27 +40,47 @@ Json json_of(const SetResult& set) {
 Json json_of(const SceneResult& scene) {
     Json sets = Json::array();
     for (const SetResult& set : scene.sets) sets.push_back(json_of(set));
+    Json builds = Json::array();
+    for (const BuildResult& build : scene.builds) builds.push_back(json_of(build));
     return {{"scene", scene.name},
             {"triangles", scene.triangles},
             {"spheres", scene.spheres},
-            {"build", {{"raymill", json_of(scene.ours)}, {"embree", json_of(scene.embree)}}},
+            {"builds", builds},
             {"depth", scene.statistics.depth},
             {"surface_area_cost", scene.statistics.surface_area_cost},
             {"sets", sets}};
 }
 
-void print_build(const char* name, const BuildResult& build) {
-    fmt::print("  build {:<8} {:7.2f} M/s [{:.2f} {:.2f}]  {:6.1f} bytes a primitive\n", name, build.mprimitives.median,
-               build.mprimitives.lower, build.mprimitives.upper, build.bytes_a_primitive);
+Json json_of(const SetSummary& summary) {
+    return {{"set", summary.set},
+            {"geometric_mean", summary.geometric_mean},
+            {"worst", summary.worst},
+            {"worst_scene", summary.worst_scene}};
+}
+
+Json json_of(const ScalingTable& table) {
+    Json rows = Json::array();
+    for (const ScalingRow& row : table.rows)
+        rows.push_back({{"name", row.name},
+                        {"nanoseconds", row.nanoseconds},
+                        {table.factor, row.factor},
+                        {"keeps_limit", table.keeps_limit(row)}});
+    return {{"title", table.title}, {"columns", table.columns}, {"limit", table.limit}, {"rows", rows}};
+}
+
+void print_build(const BuildResult& build) {
+    fmt::print("  build {:<13} {:7.2f} M/s [{:.2f} {:.2f}]  {:6.1f} bytes a primitive\n", build.name,
+               build.mprimitives.median, build.mprimitives.lower, build.mprimitives.upper, build.bytes_a_primitive);
 }
 
 }  // namespace
 
 void print_heading(const Circumstances& c) {
-    fmt::print("{} ({}), {} compute units; Embree {}{}\n", c.device, c.driver, c.compute_units, c.embree,
-               c.options.robust ? ", robust" : "");
+    fmt::print("{} ({}), {} compute units, hierarchy {}; Embree {}{}\n", c.device, c.driver, c.compute_units,
+               c.options.bvh == BvhQuality::fast ? "fast" : "high", c.embree, c.options.robust ? ", robust" : "");
     fmt::print(
-        "P camera, S to a point light, A to an area light, R mirrored, D diffuse rays. {} rounds: median "
+        "P camera, S to a point light, A to an area light, R mirrored, T through glass, D diffuse rays. {} rounds: "
+        "median "
         "[quartiles].\nTimes include reading rays and writing hits; ours of S and A the film, to which each "
         "unblocked ray adds one channel.\n",
         c.options.rounds);
@@ -67,16 +89,27 @@ void print_heading(const Circumstances& c) {
 void print_scene(const SceneResult& scene) {
     fmt::print("\n{}: {} triangles, {} spheres; depth {}, cost {:.1f}\n", scene.name, scene.triangles, scene.spheres,
                scene.statistics.depth, scene.statistics.surface_area_cost);
-    print_build("raymill", scene.ours);
-    print_build("embree", scene.embree);
+    for (const BuildResult& build : scene.builds) print_build(build);
     for (const SetResult& set : scene.sets) {
         fmt::print("  {}: {} {}, {:.1f} % {}\n", set.name, set.rays, set.description, 100 * set.hitting,
                    set.any_hit ? "blocked" : "hit");
         for (const VariantResult& v : set.variants)
-            fmt::print("    {:<21} {:7.2f} Mrays/s {:<17}  ratio {:5.2f} {:<13}  differing {:.1e}{}\n", v.name,
+            fmt::print("    {:<26} {:7.2f} Mrays/s {:<17}  ratio {:5.2f} {:<13}  differing {:.1e}{}\n", v.name,
                        v.mrays.median, fmt::format("[{:.2f} {:.2f}]", v.mrays.lower, v.mrays.upper), v.ratio.median,
                        fmt::format("[{:.2f} {:.2f}]", v.ratio.lower, v.ratio.upper), v.differing,
                        v.name == set.best ? "  <- Embree's best" : "");
+    }
+}
+
+void print_scaling(const ScalingTable& table) {
+    fmt::print("\n{}, ns; {} {} {}\n  {:<6}", table.title, table.factor, table.at_least ? "at least" : "at most",
+               table.limit, "");
+    for (const std::string& column : table.columns) fmt::print("{:>10}", column);
+    fmt::print("{:>10}\n", table.factor);
+    for (const ScalingRow& row : table.rows) {
+        fmt::print("  {:<6}", row.name);
+        for (const double time : row.nanoseconds) fmt::print("{:>10.1f}", time);
+        fmt::print("{:>10.2f}{}\n", row.factor, table.keeps_limit(row) ? "" : "  <-");
     }
 }
 
@@ -89,9 +122,14 @@ void print_summary(const std::vector<SceneResult>& scenes) {
                 if (v.ours) line += fmt::format("  {} {:5.2f}", v.name, v.ratio.median);
             fmt::print("{}\n", line);
         }
+    fmt::print("\nratio of {} to Embree's best, over {} scenes\n", AUTOMATIC, scenes.size());
+    for (const SetSummary& set : summarise(scenes))
+        fmt::print("  {}  geometric mean {:5.2f}, worst {:5.2f} ({})\n", set.set, set.geometric_mean, set.worst,
+                   set.worst_scene);
 }
 
-void write_json(const std::string& file, const Circumstances& c, const std::vector<SceneResult>& scenes) {
+void write_json(const std::string& file, const Circumstances& c, const std::vector<SceneResult>& scenes,
+                const std::vector<ScalingTable>& scaling) {
     Json all = {{"device", c.device},
                 {"driver", c.driver},
                 {"compute_units", c.compute_units},
@@ -101,9 +139,15 @@ void write_json(const std::string& file, const Circumstances& c, const std::vect
                 {"height", c.options.height},
                 {"rounds", c.options.rounds},
                 {"builds", c.options.builds},
+                {"bvh", c.options.bvh == BvhQuality::fast ? "fast" : "high"},
                 {"threads", c.options.threads},
-                {"scenes", Json::array()}};
+                {"clock", c.options.clock == Clock::wall ? "wall" : "processor"},
+                {"summary", Json::array()},
+                {"scenes", Json::array()},
+                {"scaling", Json::array()}};
+    for (const SetSummary& set : summarise(scenes)) all["summary"].push_back(json_of(set));
     for (const SceneResult& scene : scenes) all["scenes"].push_back(json_of(scene));
+    for (const ScalingTable& table : scaling) all["scaling"].push_back(json_of(table));
     std::ofstream out(file);
     out << all.dump(2) << '\n';
     out.close();

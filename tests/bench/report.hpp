@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "measure.hpp"
+#include "scaling.hpp"
 
 namespace raymill::bench {
 
@@ -20,11 +21,14 @@ struct Circumstances {
 /// To standard output.
 void print_heading(const Circumstances& circumstances);
 void print_scene(const SceneResult& scene);
+/// A row that does not keep the limit is marked.
+void print_scaling(const ScalingTable& table);
 
-/// One line a set: each of our variants' ratio to Embree's best, over all scenes.
+/// Our variants' ratio to Embree's best: a line a scene and set, then a line a set over all scenes.
 void print_summary(const std::vector<SceneResult>& scenes);
 
-/// Throws OutputError if the file cannot be written.
-void write_json(const std::string& file, const Circumstances& circumstances, const std::vector<SceneResult>& scenes);
+/// Either may be empty. Throws OutputError if the file cannot be written.
+void write_json(const std::string& file, const Circumstances& circumstances, const std::vector<SceneResult>& scenes,
+                const std::vector<ScalingTable>& scaling);
 
 }  // namespace raymill::bench

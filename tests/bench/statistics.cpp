@@ -18,4 +18,11 @@ Quartiles quartiles(std::vector<double> values) {
     return {at(0.25), at(0.5), at(0.75)};
 }
 
+double geometric_mean(const std::vector<double>& values) {
+    assert(!values.empty());
+    double sum = 0;
+    for (const double value : values) sum += std::log(value);
+    return std::exp(sum / static_cast<double>(values.size()));
+}
+
 }  // namespace raymill::bench

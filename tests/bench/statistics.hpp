@@ -15,4 +15,7 @@ struct Quartiles {
 /// values: at least one, in any order.
 Quartiles quartiles(std::vector<double> values);
 
+/// values: at least one, all positive.
+double geometric_mean(const std::vector<double>& values);
+
 }  // namespace raymill::bench

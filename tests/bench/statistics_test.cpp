@@ -31,4 +31,14 @@ TEST(Quartiles, are_not_moved_by_one_outlier) {
     EXPECT_EQ(quartiles({1, 1, 1, 1, 1000}).upper, 1);
 }
 
+TEST(GeometricMean, of_a_ratio_and_its_inverse_is_one) {
+    // log and exp each round by less than 1e-15 here.
+    EXPECT_NEAR(geometric_mean({4, 0.25}), 1, 1e-14);
+}
+
+TEST(GeometricMean, of_one_value_is_that_value) {
+    // As above, times the value.
+    EXPECT_NEAR(geometric_mean({3}), 3, 1e-14);
+}
+
 }  // namespace raymill::bench

@@ -18,8 +18,12 @@ struct Mesh {
     void add_triangle(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
     void add_sphere(const glm::vec3& center, float radius);
     std::size_t primitive_count() const { return triangles.size() + spheres.size(); }
-    Bvh build(unsigned threads = 0) const { return build_bvh(vertices, triangles, spheres, {threads}); }
+    Bvh build(unsigned threads = 0, BvhQuality quality = BvhQuality::high) const {
+        return build_bvh(vertices, triangles, spheres, {threads, quality});
+    }
 };
+
+inline constexpr BvhQuality QUALITIES[] = {BvhQuality::fast, BvhQuality::high};
 
 /// Triangles with corners within `size` of centres in the unit cube.
 Mesh random_soup(std::size_t count, std::uint32_t seed, float size = 0.1f);

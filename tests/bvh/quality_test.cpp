@@ -71,10 +71,12 @@ class MedianTree {
 
 /// `share`: of the median tree's cost, at most.
 void expect_cheaper_than_median(const Mesh& mesh, double share) {
-    const Bvh bvh = mesh.build();
-    const double found = check_tree(mesh, bvh).surface_area_cost, median = MedianTree(mesh).cost();
-    fmt::print("cost {:.2f}, median split {:.2f}\n", found, median);
-    EXPECT_LT(found, share * median);
+    const double median = MedianTree(mesh).cost();
+    for (const BvhQuality quality : QUALITIES) {
+        const double found = check_tree(mesh, mesh.build(0, quality)).surface_area_cost;
+        fmt::print("cost {:.2f}, median split {:.2f}\n", found, median);
+        EXPECT_LT(found, share * median);
+    }
 }
 
 TEST(BvhQuality, sah_beats_median_splits_on_an_uneven_sheet) {
@@ -96,6 +98,36 @@ TEST(BvhQuality, sah_beats_median_splits_on_triangles_of_many_sizes) {
     expect_cheaper_than_median(mesh, 0.8);
 }
 
+/// Cost of the tree of high quality relative to that of the fast one.
+double cost_of_high(const Mesh& mesh) {
+    const double fast = mesh.build(0, BvhQuality::fast).statistics.surface_area_cost;
+    const double high = mesh.build(0, BvhQuality::high).statistics.surface_area_cost;
+    fmt::print("cost fast {:.3f}, high {:.3f}\n", fast, high);
+    return high / fast;
+}
+
+TEST(BvhQuality, reinsertion_helps_where_objects_lie_among_each_other) {
+    Mesh mesh;
+    for (std::uint32_t i = 0; i < 60; ++i) {
+        const Mesh object = random_soup(300, i, 0.02f);
+        const Mesh place = random_soup(1, 100 + i, 1);
+        const float* at = place.vertices[0].position;
+        for (const Triangle& t : object.triangles) {
+            glm::vec3 p[3];
+            for (int corner = 0; corner < 3; ++corner) {
+                const float* q = object.vertices[t.vertex[corner]].position;
+                p[corner] = glm::vec3(at[0], at[1], at[2]) + 0.3f * glm::vec3(q[0], q[1], q[2]);
+            }
+            mesh.add_triangle(p[0], p[1], p[2]);
+        }
+    }
+    EXPECT_LT(cost_of_high(mesh), 0.98);
+}
+
+TEST(BvhQuality, reinsertion_does_not_spoil_an_even_sheet) {
+    EXPECT_LT(cost_of_high(uneven_sheet(150)), 1.001);
+}
+
 TEST(BvhQuality, sah_beats_median_splits_on_a_modelled_cat) {
     const auto mesh = read_obj(RAYMILL_TEST_DATA "/obj/egyptcat/egyptcat.obj");
     if (!mesh) GTEST_SKIP() << "no " RAYMILL_TEST_DATA "/obj/egyptcat/egyptcat.obj";
@@ -105,13 +137,16 @@ TEST(BvhQuality, sah_beats_median_splits_on_a_modelled_cat) {
 
 TEST(BvhQuality, a_million_triangles_are_complete) {
     const Mesh mesh = uneven_sheet(708);
-    const Bvh bvh = mesh.build();
-    fmt::print("{} triangles in {:.3f} s: {:.2f} million a second; cost {:.2f}, depth {}, {:.2f} triangles a block\n",
-               mesh.triangles.size(), bvh.statistics.seconds,
-               static_cast<double>(mesh.triangles.size()) / bvh.statistics.seconds * 1e-6,
-               bvh.statistics.surface_area_cost, bvh.statistics.depth,
-               static_cast<double>(mesh.triangles.size()) / static_cast<double>(bvh.triangle_blocks.size()));
-    expect_complete_tree(mesh, bvh);
+    for (const BvhQuality quality : QUALITIES) {
+        const Bvh bvh = mesh.build(0, quality);
+        fmt::print(
+            "{} triangles in {:.3f} s: {:.2f} million a second; cost {:.2f}, depth {}, {:.2f} triangles a block\n",
+            mesh.triangles.size(), bvh.statistics.seconds,
+            static_cast<double>(mesh.triangles.size()) / bvh.statistics.seconds * 1e-6,
+            bvh.statistics.surface_area_cost, bvh.statistics.depth,
+            static_cast<double>(mesh.triangles.size()) / static_cast<double>(bvh.triangle_blocks.size()));
+        expect_complete_tree(mesh, bvh);
+    }
 }
 
 }  // namespace

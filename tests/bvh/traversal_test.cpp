@@ -10,12 +10,15 @@ namespace {
 
 /// hit_share: of the rays, at least: a test on rays that all miss would prove nothing.
 void expect_same_hits(const Mesh& mesh, int ray_count, double hit_share) {
-    const Bvh bvh = mesh.build();
+    const Bvh fast = mesh.build(0, BvhQuality::fast), high = mesh.build(0, BvhQuality::high);
     int hits = 0, rays = 0;
-    for (const TestRay& ray : rays_at(bvh.bounds, ray_count, 42)) {
-        const TestHit expected = hit_by_brute_force(mesh, ray), found = hit_by_tree(bvh, ray);
-        ASSERT_EQ(found.primitive, expected.primitive) << "ray " << rays;
-        ASSERT_EQ(found.t, expected.t) << "ray " << rays;
+    for (const TestRay& ray : rays_at(high.bounds, ray_count, 42)) {
+        const TestHit expected = hit_by_brute_force(mesh, ray);
+        for (const Bvh* bvh : {&fast, &high}) {
+            const TestHit found = hit_by_tree(*bvh, ray);
+            ASSERT_EQ(found.primitive, expected.primitive) << "ray " << rays;
+            ASSERT_EQ(found.t, expected.t) << "ray " << rays;
+        }
         hits += expected.primitive != NO_INDEX;
         ++rays;
     }

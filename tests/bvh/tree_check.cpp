@@ -172,4 +172,8 @@ void expect_complete_tree(const Mesh& mesh, const Bvh& bvh) {
     for (std::size_t id = 0; id < facts.occurrences.size(); ++id) ASSERT_EQ(facts.occurrences[id], 1) << "id " << id;
 }
 
+void expect_complete_trees(const Mesh& mesh) {
+    for (const BvhQuality quality : QUALITIES) expect_complete_tree(mesh, mesh.build(0, quality));
+}
+
 }  // namespace raymill::test

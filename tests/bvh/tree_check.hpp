@@ -23,4 +23,7 @@ TreeFacts check_tree(const Mesh& mesh, const Bvh& bvh);
 /// check_tree, and every primitive occurs exactly once.
 void expect_complete_tree(const Mesh& mesh, const Bvh& bvh);
 
+/// expect_complete_tree on those of both qualities.
+void expect_complete_trees(const Mesh& mesh);
+
 }  // namespace raymill::test

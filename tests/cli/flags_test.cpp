@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "exr_pixels.hpp"
 #include "image/temporary_folder.hpp"
@@ -33,6 +34,14 @@ class Flags : public testing::Test {
     const std::string scene_ = folder_.file("scene.toml");
 };
 
+TEST_F(Flags, say_how_long_to_build_the_hierarchy) {
+    for (const char* quality : {"fast", "high"}) {
+        const Outcome outcome = check({"--bvh", quality});
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        EXPECT_TRUE(contains(outcome.out, " bytes a primitive, ")) << outcome.out;
+    }
+}
+
 TEST_F(Flags, that_make_no_sense_are_refused_by_name) {
     const std::vector<std::vector<std::string>> senseless = {
         {"--size", "640"},         {"--size", "0x10"},        {"--size", "10x-1"},    {"--size", "8x8x8"},
@@ -41,7 +50,7 @@ TEST_F(Flags, that_make_no_sense_are_refused_by_name) {
         {"--crop", "nan,1,0,1"},   {"--mem-limit", "lots"},   {"--mem-limit", "12Q"}, {"--mem-limit", "0"},
         {"--mem-limit", "-5M"},    {"--mem-limit", ""},       {"--spp", "0"},         {"--depth", "-1"},
         {"--queue-capacity", "0"}, {"--work-group", "0"},     {"--threads", "0"},     {"--integrator", "magic"},
-        {"--exposure", "inf"},     {"--seed", "-1"}};
+        {"--exposure", "inf"},     {"--seed", "-1"},          {"--bvh", "best"},    {"--bvh", ""}};
     for (const auto& flag : senseless) {
         SCOPED_TRACE(flag[0] + " '" + flag[1] + "'");
         // With an equals sign, so that a value that begins with a minus is one.
@@ -94,6 +103,8 @@ TEST_F(Flags, of_the_device_do_not_change_the_picture) {
     const Picture plain = render({});
     EXPECT_TRUE(same_pixels(plain, render({"--queue-capacity", "7", "--work-group", "8", "--threads", "1"})));
     EXPECT_TRUE(same_pixels(plain, render({"--mem-limit", "1M", "--kernel-dir", RAYMILL_KERNELS})));
+    EXPECT_TRUE(same_pixels(plain, render({"--bvh", "fast"})));
+    EXPECT_TRUE(same_pixels(plain, render({"--bvh", "high"})));
     EXPECT_FALSE(same_pixels(plain, render({"--depth", "0"})));
 }
 
@@ -126,8 +137,32 @@ TEST_F(Flags, of_statistics_print_a_row_for_every_kernel_on_standard_error) {
     const Outcome outcome = run_raymill({"render", scene_, "-o", folder_.file("a.exr"), "--stats"});
     EXPECT_EQ(outcome.status, 0);
     EXPECT_EQ(outcome.out, "");
-    for (const char* part : {"generate", "intersect", "shade", "shadow", "secondary", "432 camera", "film hash"})
+    for (const char* part : {"generate", "intersect", "shade", "shadow", "secondary", "wall clock", "film hash"})
         EXPECT_TRUE(contains(outcome.err, part)) << outcome.err << "\nwithout " << part;
+}
+
+TEST_F(Flags, of_statistics_files_write_both_beside_the_same_picture) {
+    const std::string stats = folder_.file("stats.json"), trace = folder_.file("trace.json");
+    const Picture plain = render({}), profiled = render({"--stats-json", stats, "--trace", trace});
+    EXPECT_TRUE(same_pixels(plain, profiled));
+    const auto json = nlohmann::json::parse(read_bytes(stats));
+    EXPECT_EQ(json.at("run").at("width"), 24);
+    EXPECT_EQ(json.at("depths").at(0).at("popped"), 432);
+    EXPECT_FALSE(json.at("launches").at("rows").empty());
+    std::vector<std::string> spans;
+    for (const auto& span : json.at("times").at("spans")) spans.push_back(span.at("name"));
+    const std::vector<std::string> expected = {"load scene",   "open device",     "build hierarchy", "build kernels",
+                                               "upload scene", "allocate queues", "render",          "write picture"};
+    EXPECT_EQ(spans, expected);
+    EXPECT_FALSE(nlohmann::json::parse(read_bytes(trace)).at("traceEvents").empty());
+}
+
+TEST_F(Flags, of_statistics_files_that_cannot_be_written_are_refused_before_rendering) {
+    const std::string picture = folder_.file("a.exr");
+    expect_failure(run_raymill({"render", scene_, "-o", picture, "--trace", folder_.file("no/where.json")}), 1,
+                   "where.json");
+    expect_failure(run_raymill({"render", scene_, "-o", picture, "--stats-json", picture}), 2, "two things at once");
+    EXPECT_EQ(folder_.entries(), 1);
 }
 
 TEST_F(Flags, of_silence_leave_nothing_to_read) {

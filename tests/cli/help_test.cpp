@@ -24,7 +24,7 @@ TEST(help, of_render_names_its_flags_and_statuses) {
                 {"SCENE",        "--output",     "--size",       "WxH",         "--spp",
                  "--depth",      "--integrator", "--crop",       "x0,x1,y0,y1", "--seed",
                  "--exposure",   "--half",       "--aov",        "--device",     "--threads",   "--queue-capacity",
-                 "--work-group", "--mem-limit",  "--kernel-dir", "--stats",     "--quiet",
+                 "--work-group", "--mem-limit",  "--kernel-dir", "--stats", "--stats-json", "--trace", "--quiet",
                  "130",          "Examples:"});
 }
 

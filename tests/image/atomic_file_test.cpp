@@ -6,6 +6,7 @@
 #include <csignal>
 #include <functional>
 
+#include "common/files.hpp"
 #include "image/image.hpp"
 #include "temporary_folder.hpp"
 

@@ -138,6 +138,17 @@ TEST_F(OneFilm, comes_of_a_capacity_that_is_chosen_by_itself) {
     expect_same(options_with(0, 256));
 }
 
+// With one sample a pixel the first adds are plain, and those of several light samples atomic.
+TEST_F(OneFilm, of_one_sample_a_pixel_comes_of_any_queue) {
+    Scene single = scene();
+    single.settings.spp = 1;
+    const Frame whole = render(single);
+    for (const RenderOptions& options : {options_with(64, 1), options_with(997, 8), options_with(65536)}) {
+        const Frame frame = render(single, options);
+        EXPECT_EQ(frame.hash(), whole.hash()) << differing_pixels(frame, whole) << " pixels differ";
+    }
+}
+
 TEST_F(OneFilm, comes_of_rays_together_and_of_rays_alone) {
     for (const Traversal traversal : {Traversal::packet, Traversal::single}) {
         RenderOptions options = options_with(997);

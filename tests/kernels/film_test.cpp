@@ -89,6 +89,22 @@ TEST(Film, sums_that_overflow_are_counted) {
     EXPECT_EQ(rig.intersect(rays).film.counters.saturated, 1u);
 }
 
+TEST(Film, plain_adds_make_the_sums_and_counts_of_atomic_ones) {
+    Random random(3);
+    std::vector<Ray> rays;
+    // Four rays a pixel: those of one chunk add one after the other, and no other chunk has their pixels.
+    for (uint i = 0; i < 16 * CHUNK; ++i) {
+        rays.push_back(weighing(std::exp2(random.in(-40, 26)) * (random.below(2) == 0 ? 1.0f : -1.0f), i / 4));
+        if (random.below(50) == 0) rays.back().throughput[0] = std::numeric_limits<float>::quiet_NaN();
+    }
+    const KernelRig rig(nothing_but_background());
+    const FilmState atomic = rig.intersect(rays).film, plain = rig.intersect(rays, 0, true).film;
+    EXPECT_GT(atomic.counters.not_a_number, 0u);
+    EXPECT_GT(atomic.counters.saturated, 0u);
+    EXPECT_EQ(plain.sums, atomic.sums);
+    EXPECT_TRUE(same_bits(plain.counters, atomic.counters));
+}
+
 TEST(Film, negative_light_subtracts) {
     const std::vector<Ray> rays = {weighing(-0.375f, 0), weighing(0.125f, 0)};
     EXPECT_EQ(KernelRig(nothing_but_background()).intersect(rays).film.at(0, 0), film_units(-0.25f));

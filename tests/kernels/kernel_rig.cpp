@@ -127,11 +127,12 @@ std::vector<Ray> KernelRig::generate(std::uint64_t first_sample, uint count) con
     return rays.read(device());
 }
 
-IntersectResult KernelRig::intersect(std::span<const Ray> rays, uint first) const {
+IntersectResult KernelRig::intersect(std::span<const Ray> rays, uint first, bool pixels_once) const {
     const uint count = static_cast<uint>(rays.size()) - first;
     const Buffer<Ray> queue = filled(rays);
     Buffer<Hit> hits = guarded<Hit>(count);
     Film film = film_for(rays);
+    film.pixels_once = pixels_once;
     stages().intersect(parts_->scene, {queue, first, count}, hits, film);
     return {hits.read(device()), read(film)};
 }

@@ -1,4 +1,4 @@
-// The elementary functions of lib/math.h and lib/random.h, item by item.
+// The elementary functions of lib/math.h, lib/lanes.h and lib/random.h, item by item.
 
 #include "lib/sampling.h"
 
@@ -12,9 +12,16 @@ kernel void math_probe(global const uint* a, global const uint* b, uint items, u
     if (selector == 1) r.x = log2_exact(x);
     if (selector == 2) r.x = power(x, y);
     if (selector == 3) r.xyz = exp_minus((float3)(x, y, 0.0f));
-    if (selector == 4) r.xy = cos_sin_turns(x);
+    float16 first, second;
+    if (selector == 4) {
+        lanes_cos_sin((float16)(x), &first, &second);
+        r.xy = (float2)(first.s0, second.s0);
+    }
     if (selector == 5) r.x = angle_of(y, x);
-    if (selector == 6) r.xy = concentric_disk((float2)(x, y));
+    if (selector == 6) {
+        lanes_disk((float16)(x), (float16)(y), &first, &second);
+        r.xy = (float2)(first.s0, second.s0);
+    }
     vstore4(as_uint4(r), i, out);
 }
 
@@ -23,10 +30,11 @@ kernel void tangents_probe(global const uint* x, global const uint* y, global co
                            global uint* out) {
     const uint i = get_global_id(0);
     if (i >= items || selector != 0) return;
-    float3 t, u;
-    tangents((float3)(as_float(x[i]), as_float(y[i]), as_float(z[i])), &t, &u);
-    vstore4(as_uint4((float4)(t, 0.0f)), 2 * i, out);
-    vstore4(as_uint4((float4)(u, 0.0f)), 2 * i + 1, out);
+    const Lanes3 n = lanes_of((float3)(as_float(x[i]), as_float(y[i]), as_float(z[i])));
+    Lanes3 t, u;
+    lanes_tangents(n, &t, &u);
+    vstore4(as_uint4((float4)(t.x.s0, t.y.s0, t.z.s0, 0.0f)), 2 * i, out);
+    vstore4(as_uint4((float4)(u.x.s0, u.y.s0, u.z.s0, 0.0f)), 2 * i + 1, out);
 }
 
 /// Two words of output an item: stratified_point of (index, key).

@@ -107,8 +107,10 @@ Mesh box(const glm::vec3& lower, const glm::vec3& upper) {
 
 Bvh uncullable_bvh(const Scene& scene) {
     Bvh bvh;
-    bvh.triangle_blocks = triangle_blocks(scene);
-    bvh.sphere_blocks = sphere_blocks(scene);
+    const std::vector<TriangleBlock> triangles = triangle_blocks(scene);
+    const std::vector<SphereBlock> spheres = sphere_blocks(scene);
+    bvh.triangle_blocks.assign(triangles.begin(), triangles.end());
+    bvh.sphere_blocks.assign(spheres.begin(), spheres.end());
     std::vector<uint> level;
     add_leaves(bvh.triangle_blocks.size(), 0, level);
     add_leaves(bvh.sphere_blocks.size(), CHILD_SPHERES, level);
@@ -138,7 +140,7 @@ Bvh uncullable_bvh(const Scene& scene) {
             if (node.bounds[0][0][lane] < 0 && !(node.child[lane] & CHILD_LEAF))
                 node.child[lane] = last - node.child[lane];
     std::reverse(nodes.begin(), nodes.end());
-    bvh.nodes = nodes;
+    bvh.nodes.assign(nodes.begin(), nodes.end());
     return bvh;
 }
 

@@ -21,11 +21,11 @@ void PrintTo(const PlantedBug& bug, std::ostream* out) {
 }
 
 const PlantedBug bugs[] = {
-    {"pixel_offset", "lib/camera.h", "((float)s.y + jitter.y)", "((float)s.y + jitter.x)", "generate"},
+    {"pixel_offset", "lib/camera.h", "(row + jitter_y)", "(row + jitter_x)", "generate"},
     {"wrong_triangle_weight", "lib/triangle.h", "*u = va * inverse", "*u = wa * inverse", "intersect"},
     {"far_end_of_spheres", "lib/sphere.h", "near = min8(t0, t1)", "near = max8(t0, t1)", "intersect"},
-    {"no_attenuation", "lib/light.h", "return 1.0f / fma(", "return 1.0f; return fma(", "shade"},
-    {"attenuation_off_by_1e_5", "lib/light.h", "return 1.0f / fma(", "return 1.00001f / fma(", "shade"},
+    {"no_attenuation", "lib/light.h", "attenuation = 1.0f / fma(", "attenuation = 1.0f + 0.0f * fma(", "shade"},
+    {"attenuation_off_by_1e_5", "lib/light.h", "attenuation = 1.0f / fma(", "attenuation = 1.00001f / fma(", "shade"},
     {"no_offset", "lib/surface.h", "if (!world->constants->robust_offset) return s->position;", "return s->position;",
      "shade"},
     {"filter_without_transmission", "shadow.cl", " * filter->transmission", "", "shadow"},
@@ -36,8 +36,7 @@ const PlantedBug bugs[] = {
     {"half_of_fresnel", "lib/material.h", "return 0.5f * (parallel", "return 0.25f * (parallel", "secondary"},
     {"children_share_a_path", "secondary.cl", "path_child(parent->path, branch)", "path_child(parent->path, 0)",
      "secondary"},
-    {"green_counted_as_red", "lib/film.h", "film_add_units(film, beauty + 1, g)", "film_add_units(film, beauty + 1, r)",
-     "film"},
+    {"green_counted_as_red", "lib/film.h", "FILM_BEAUTY, pixel, a + b)", "FILM_BEAUTY, pixel, (a + b).xxz)", "film"},
 };
 
 class Planted : public testing::TestWithParam<PlantedBug> {};

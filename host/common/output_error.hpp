@@ -1,4 +1,4 @@
-// How the room words a failed write.
+// How a failed write is worded.
 #pragma once
 
 #include <string>

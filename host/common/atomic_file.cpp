@@ -8,11 +8,12 @@
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <random>
 #include <system_error>
 
-#include "image/image.hpp"
-#include "image/output_error.hpp"
+#include "common/files.hpp"
+#include "common/output_error.hpp"
 
 namespace raymill {
 
@@ -169,6 +170,16 @@ void write_atomically(const std::string& file, const std::function<void(const st
     flush_to_disk(temporary.path(), file);
     if (target.exists && ::chmod(temporary.path().c_str(), target.permissions) != 0) throw write_error(file, errno);
     if (const int error_number = temporary.rename_to(target.path)) throw write_error(file, error_number);
+}
+
+void write_text_atomically(const std::string& file, const std::function<void(std::ostream& out)>& write) {
+    write_atomically(file, [&](const std::string& temporary) {
+        errno = 0;  // a stream says that a write failed, the system why
+        std::ofstream out(temporary, std::ios::binary);
+        write(out);
+        out.close();
+        if (!out) throw write_error(file, errno);
+    });
 }
 
 void check_writable(const std::string& file) {

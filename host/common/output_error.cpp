@@ -1,5 +1,5 @@
-// How the room words a failed write.
-#include "image/output_error.hpp"
+// How a failed write is worded.
+#include "common/output_error.hpp"
 
 #include <fmt/format.h>
 
