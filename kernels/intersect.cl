@@ -21,7 +21,7 @@ static void intersect_chunk(const Geometry* geometry, global const Ray* rays, ui
 }
 #endif
 
-/// One work-item a chunk of CHUNK rays.
+/// One work-item a chunk of CHUNK rays, or one ray where rays are traced alone.
 kernel void intersect(global const Ray* rays, uint first_ray, uint count, global const BvhNode* nodes,
                       global const TriangleBlock* triangle_blocks, global const SphereBlock* sphere_blocks,
                       global const Plane* planes, global const Texture* textures, global const float* texels,
@@ -29,8 +29,8 @@ kernel void intersect(global const Ray* rays, uint first_ray, uint count, global
                       global Counters* counters, uint pixels_once) {
     const Film film = {film_sums, counters, constants, pixels_once != 0};
     const Geometry geometry = scene_geometry(nodes, triangle_blocks, sphere_blocks, planes, constants);
-    const uint begin = get_global_id(0) * CHUNK;
-    const uint end = min(begin + CHUNK, count);
+    const uint begin = get_global_id(0) * RAYS_A_WORK_ITEM;
+    const uint end = min(begin + RAYS_A_WORK_ITEM, count);
     if (begin >= count) return;
     intersect_chunk(&geometry, rays + first_ray + begin, end - begin, hits + begin);
     for (uint i = begin; i < end; ++i) {

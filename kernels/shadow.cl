@@ -7,50 +7,44 @@
 #include "lib/packet.h"
 #include "lib/surface.h"
 
-/// Finds out for a segment of shadow rays what nothing at all stands in the way of: one bit a ray. The others are blocked,
-/// or filtered.
+/// For each of a segment's shadow rays some primitive that stands in its way, or NO_INDEX.
 #ifdef RAYMILL_PACKETS
-static ulong clear_rays(const Geometry* geometry, global const ShadowRay* rays, uint count) {
+static void find_blockers(const Geometry* geometry, global const ShadowRay* rays, uint count, uint* blockers) {
     Packet packet;
     for (uint i = 0; i < count; ++i) chunk_add(&packet.rays, i, rays[i].origin, rays[i].direction, rays[i].t_max);
     chunk_prepare(&packet.rays, count);
     traverse_chunk(geometry, &packet, true);
-    ulong clear = 0;
-    for (uint i = 0; i < count; ++i)
-        if (chunk_hit(&packet.rays, i).primitive == NO_INDEX) clear |= 1ul << i;
-    return clear;
+    for (uint i = 0; i < count; ++i) blockers[i] = chunk_hit(&packet.rays, i).primitive;
 }
 #else
-static ulong clear_rays(const Geometry* geometry, global const ShadowRay* rays, uint count) {
-    ulong clear = 0;
+static void find_blockers(const Geometry* geometry, global const ShadowRay* rays, uint count, uint* blockers) {
     for (uint i = 0; i < count; ++i)
-        if (!is_blocked(geometry, load3(rays[i].origin), load3(rays[i].direction), rays[i].t_max)) clear |= 1ul << i;
-    return clear;
+        blockers[i] = any_hit_before(geometry, load3(rays[i].origin), load3(rays[i].direction), rays[i].t_max).primitive;
 }
 #endif
 
-/// Whether a surface in the way may let some light through.
-static inline bool filters(constant SceneConstants* constants) {
-    return constants->shadows == SHADOWS_FILTERED && constants->any_filter;
+/// What a primitive in the way leaves of the light: all black if it blocks it.
+static inline float3 filter_of(const World* world, uint primitive) {
+    if (world->constants->shadows != SHADOWS_FILTERED || !world->constants->any_filter) return (float3)(0.0f);
+    global const Material* material = world->materials + material_of(world, primitive);
+    return load3(material->base_color) * material->transmission;
 }
 
-/// What is left of light from t_max away after what stands in its way: filtered by every transmissive surface, each
-/// crossing once.
+/// What is left of light from t_max away: filtered by every transmissive surface on the way, each crossing once.
 static inline float3 transmittance(const Geometry* geometry, const World* world, global const ShadowRay* ray) {
     const float3 origin = load3(ray->origin), direction = load3(ray->direction);
     // In the order of distance, so that the product's bits do not depend on the hierarchy.
     float3 left = (float3)(1.0f);
-    Hit hit = {0.0f, 0.0f, 0.0f, NO_INDEX};
+    Hit hit = no_hit(0.0f);
     for (;;) {
         hit = closest_hit_after(geometry, origin, direction, hit, ray->t_max);
         if (hit.primitive == NO_INDEX) return left;
-        global const Material* filter = world->materials + material_of(world, hit.primitive);
-        left *= load3(filter->base_color) * filter->transmission;
+        left *= filter_of(world, hit.primitive);
         if (!any(left != 0.0f)) return left;
     }
 }
 
-/// One work-item a segment.
+/// One work-item a segment, or one ray where rays are traced alone.
 kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shadow_counts, uint segment_count,
                    global const BvhNode* nodes, global const TriangleBlock* triangle_blocks,
                    global const SphereBlock* sphere_blocks, global const Plane* planes,
@@ -60,17 +54,23 @@ kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shado
     const Film film = {film_sums, counters, constants, pixels_once != 0};
     const Geometry geometry = scene_geometry(nodes, triangle_blocks, sphere_blocks, planes, constants);
     const World world = {0, triangles, spheres, planes, materials, 0, 0, constants};
-    const uint segment = get_global_id(0);
-    if (segment >= segment_count) return;
-    const uint count = shadow_counts[segment];
-    if (count == 0) return;
-    const ulong clear =
-        constants->shadows == SHADOWS_NONE ? ~0ul : clear_rays(&geometry, shadow_rays + segment * CHUNK, count);
+    const uint first = get_global_id(0) * RAYS_A_WORK_ITEM % CHUNK;
+    const uint segment = get_global_id(0) * RAYS_A_WORK_ITEM / CHUNK;
+    if (segment >= segment_count || first >= shadow_counts[segment]) return;
+    global const ShadowRay* rays = shadow_rays + segment * CHUNK + first;
+    const uint count = min((uint)RAYS_A_WORK_ITEM, shadow_counts[segment] - first);
+    uint blockers[RAYS_A_WORK_ITEM];
+    const bool all_clear = constants->shadows == SHADOWS_NONE;
+    if (!all_clear) find_blockers(&geometry, rays, count, blockers);
     uint blocked = 0;
     for (uint i = 0; i < count; ++i) {
-        global const ShadowRay* ray = shadow_rays + segment * CHUNK + i;
-        float3 left = clear >> i & 1ul ? (float3)(1.0f) : (float3)(0.0f);
-        if (!(clear >> i & 1ul) && filters(constants)) left = transmittance(&geometry, &world, ray);
+        global const ShadowRay* ray = rays + i;
+        float3 left = (float3)(1.0f);
+        if (!all_clear && blockers[i] != NO_INDEX) {
+            left = filter_of(&world, blockers[i]);
+            // Another surface on the way may block what this one lets through.
+            if (any(left != 0.0f)) left = transmittance(&geometry, &world, ray);
+        }
         if (ray->route == ROUTE_CAMERA && film_keeps(&film, FILM_SHADOW)) {
             film_add(&film, FILM_SHADOW, ray->pixel, left);
             film_add_units(&film, film_pixel(&film, FILM_SHADOW, ray->pixel) + 3, FILM_ONE);

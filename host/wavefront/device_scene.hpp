@@ -9,6 +9,7 @@
 namespace raymill {
 
 struct DeviceScene {
+    /// The hierarchy must outlive this: a device that is this processor reads it where it is.
     DeviceScene(const Device& device, const Scene& scene, const Bvh& bvh, const FilmPlanes& planes = {});
 
     Buffer<BvhNode> nodes;

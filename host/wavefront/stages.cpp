@@ -46,11 +46,15 @@ Stages::Stages(const Device& device, std::size_t work_group, const std::string& 
     };
     const auto item_stage = [&](profile::Stage name) { return stage(name, item_group, 1); };
     const auto chunk_stage = [&](profile::Stage name) { return stage(name, chunk_group, CHUNK); };
+    // One ray a work-item, on processors still without company: their stacks are replicated like those of chunks.
+    const auto ray_stage = [&](profile::Stage name) {
+        return packets ? chunk_stage(name) : stage(name, device.info.type == "CPU" ? chunk_group : item_group, 1);
+    };
     generate_ = chunk_stage(profile::Stage::generate);
-    intersect_ = chunk_stage(profile::Stage::intersect);
+    intersect_ = ray_stage(profile::Stage::intersect);
     shade_ = chunk_stage(profile::Stage::shade);
     features_ = chunk_stage(profile::Stage::features);
-    shadow_ = chunk_stage(profile::Stage::shadow);
+    shadow_ = ray_stage(profile::Stage::shadow);
     secondary_ = chunk_stage(profile::Stage::secondary);
     tally_ = chunk_stage(profile::Stage::tally);
     resolve_ = item_stage(profile::Stage::resolve);
@@ -81,9 +85,9 @@ void Stages::generate(const DeviceScene& scene, std::uint64_t first_sample, uint
 }
 
 void Stages::intersect(const DeviceScene& scene, QueueRange<Ray> rays, Buffer<Hit>& hits, Film& film) {
-    launch(intersect_, chunks(rays.count), rays.count, rays.items, rays.first, rays.count, scene.nodes,
-           scene.triangle_blocks, scene.sphere_blocks, scene.planes, scene.textures, scene.texels, scene.constants,
-           hits, film.sums, film.counters, film.pixels_once);
+    launch(intersect_, (rays.count + intersect_.items - 1) / intersect_.items, rays.count, rays.items, rays.first,
+           rays.count, scene.nodes, scene.triangle_blocks, scene.sphere_blocks, scene.planes, scene.textures,
+           scene.texels, scene.constants, hits, film.sums, film.counters, film.pixels_once);
 }
 
 void Stages::shade(const DeviceScene& scene, QueueRange<Ray> rays, const Buffer<Hit>& hits, SlotRange slots,
@@ -101,9 +105,9 @@ void Stages::features(const DeviceScene& scene, QueueRange<Ray> rays, uint depth
 }
 
 void Stages::shadow(const DeviceScene& scene, const ShadowQueue& shadow_rays, uint segments, Film& film) {
-    launch(shadow_, segments, segments * CHUNK, shadow_rays.rays, shadow_rays.counts, segments, scene.nodes,
-           scene.triangle_blocks, scene.sphere_blocks, scene.planes, scene.triangles, scene.spheres, scene.materials,
-           scene.constants, film.sums, film.counters, film.pixels_once);
+    launch(shadow_, segments * (CHUNK / shadow_.items), segments * CHUNK, shadow_rays.rays, shadow_rays.counts,
+           segments, scene.nodes, scene.triangle_blocks, scene.sphere_blocks, scene.planes, scene.triangles,
+           scene.spheres, scene.materials, scene.constants, film.sums, film.counters, film.pixels_once);
 }
 
 void Stages::secondary(const DeviceScene& scene, QueueRange<Ray> rays, const Buffer<Hit>& hits, Buffer<Ray>& children,

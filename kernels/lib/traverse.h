@@ -6,6 +6,13 @@
 
 #include "lib/sphere.h"
 
+// On processors a work-item traces a chunk, so that rays can go together; elsewhere every ray is one.
+#ifdef RAYMILL_PACKETS
+#define RAYS_A_WORK_ITEM CHUNK
+#else
+#define RAYS_A_WORK_ITEM 1
+#endif
+
 #define STACK_SIZE 256  // seven entries a level, 32 levels, and the root (host/bvh bounds the depth)
 
 /// What rays can hit.
@@ -209,21 +216,20 @@ static void traverse_all(const Geometry* geometry, Query* query, bool any_hit) {
 
 /// The closest hit in front of the ray later than `after`; primitive is NO_INDEX if there is none.
 static inline Hit closest_hit_after(const Geometry* geometry, float3 origin, float3 direction, Hit after, float t_max) {
-    Query query = {origin, direction, after, {t_max, 0.0f, 0.0f, NO_INDEX}};
+    Query query = {origin, direction, after, no_hit(t_max)};
     traverse_all(geometry, &query, false);
     return query.best;
 }
 
 static inline Hit closest_hit(const Geometry* geometry, float3 origin, float3 direction) {
-    const Hit start = {0.0f, 0.0f, 0.0f, NO_INDEX};
-    return closest_hit_after(geometry, origin, direction, start, INFINITY);
+    return closest_hit_after(geometry, origin, direction, no_hit(0.0f), INFINITY);
 }
 
-/// Whether anything lies between the origin and t_max.
-static inline bool is_blocked(const Geometry* geometry, float3 origin, float3 direction, float t_max) {
-    Query query = {origin, direction, {0.0f, 0.0f, 0.0f, NO_INDEX}, {t_max, 0.0f, 0.0f, NO_INDEX}};
+/// Some hit up to t_max, whichever is found first; primitive is NO_INDEX if nothing is there.
+static inline Hit any_hit_before(const Geometry* geometry, float3 origin, float3 direction, float t_max) {
+    Query query = {origin, direction, no_hit(0.0f), no_hit(t_max)};
     traverse_all(geometry, &query, true);
-    return query.best.primitive != NO_INDEX;
+    return query.best;
 }
 
 #endif

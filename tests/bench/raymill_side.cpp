@@ -43,7 +43,7 @@ std::string name_of(Traversal traversal) {
 }
 
 Film film_of(const Device& device, std::size_t pixels) {
-    Film film{{device, pixels * FILM_CHANNELS}, {device, 1}};
+    Film film{{device, pixels * FILM_CHANNELS}, {device, 1}, true};
     film.sums.clear(device);
     film.counters.clear(device);
     device.queue.finish();

@@ -45,7 +45,7 @@ class RaymillKernels {
     std::vector<Kind> kinds_;
 };
 
-/// A scene on the device.
+/// A scene on the device. The hierarchy must outlive it.
 class RaymillSide {
   public:
     RaymillSide(const RaymillKernels& kernels, const Scene& scene, const Bvh& bvh)

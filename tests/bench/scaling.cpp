@@ -61,8 +61,9 @@ Work trace_of(RaymillSide& side, const RaySet& set) {
 /// A made scene, ready to be traced.
 struct PreparedScene {
     PreparedScene(BenchScene made, const RaymillKernels& kernels, const MeasureOptions& options)
-        : bench(std::move(made)), sets(ray_sets(bench, options)) {
-        RaymillHierarchy hierarchy(bench.scene, {options.threads, options.bvh});
+        : bench(std::move(made)),
+          sets(ray_sets(bench, options)),
+          hierarchy(bench.scene, {options.threads, options.bvh}) {
         hierarchy.build();
         side.emplace(kernels, bench.scene, hierarchy.bvh());
     }
@@ -74,6 +75,7 @@ struct PreparedScene {
 
     BenchScene bench;
     std::vector<RaySet> sets;
+    RaymillHierarchy hierarchy;  // the side may share its memory
     std::optional<RaymillSide> side;
 };
 

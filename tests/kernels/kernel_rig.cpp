@@ -102,21 +102,24 @@ FilmState read(const Film& film) {
 }  // namespace
 
 struct KernelRig::Parts {
+    Parts(const Scene& host_scene, Bvh hierarchy, const FilmPlanes& planes = {}, std::size_t film_size = 0)
+        : bvh(std::move(hierarchy)), scene(device(), host_scene, bvh, planes), film_pixels(film_size) {}
+
+    Bvh bvh;  // the scene may share its memory
     DeviceScene scene;
-    std::size_t film_pixels = 0;  // of all planes
+    std::size_t film_pixels;  // of all planes
 };
 
 KernelRig::KernelRig(const Scene& scene)
     : KernelRig(scene, build_bvh(scene.vertices, scene.triangles, scene.spheres)) {}
 
-KernelRig::KernelRig(const Scene& scene, const Bvh& bvh)
-    : parts_(std::make_unique<Parts>(Parts{DeviceScene(device(), scene, bvh)})) {}
+KernelRig::KernelRig(const Scene& scene, const Bvh& bvh) : parts_(std::make_unique<Parts>(scene, bvh)) {}
 
 KernelRig::KernelRig(const Scene& scene, const FilmPlanes& planes) {
-    const Bvh bvh = build_bvh(scene.vertices, scene.triangles, scene.spheres);
     const PixelWindow window = crop_window(scene.settings);
     const auto pixels = static_cast<std::size_t>(window.width) * static_cast<std::size_t>(window.height);
-    parts_ = std::make_unique<Parts>(Parts{DeviceScene(device(), scene, bvh, planes), pixels * planes.count()});
+    parts_ = std::make_unique<Parts>(scene, build_bvh(scene.vertices, scene.triangles, scene.spheres), planes,
+                                     pixels * planes.count());
 }
 
 KernelRig::~KernelRig() = default;
