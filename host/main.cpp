@@ -36,6 +36,7 @@ int run(int argc, char** argv) {
                                                         {"devices", add_devices_command(app)},
                                                         {"explain", add_explain_command(app)},
                                                         {"verify", add_verify_command(app)},
+                                                        {"replay", add_replay_command(app)},
                                                         {"scene", add_scene_command(app)}};
     try {
         app.parse(argc, argv);

@@ -72,8 +72,9 @@ std::uint64_t parse_bytes(const std::string& text) {
     return static_cast<std::uint64_t>(bytes);
 }
 
-void SceneArguments::add_to(CLI::App& command) {
-    command.add_option("SCENE", file, "Scene file (.toml) or bare model (.obj)")->required();
+CLI::Option* SceneArguments::add_to(CLI::App& command) {
+    CLI::Option* const scene =
+        command.add_option("SCENE", file, "Scene file (.toml) or bare model (.obj)")->required();
     command.add_option("--size", size, "Image size in pixels, as in 640x480")->type_name("WxH");
     command.add_option("--spp", spp, "Samples per pixel, stratified")->type_name("N")->check(CLI::Range(1, 1 << 20));
     command.add_option("--depth", depth, "Recursion limit; 0 is local illumination with shadows")
@@ -83,6 +84,11 @@ void SceneArguments::add_to(CLI::App& command) {
     command.add_option("--crop", crop, "Render only this window, in fractions of the image")->type_name("x0,x1,y0,y1");
     command.add_option("--seed", seed, "Seed of the random numbers")->type_name("N");
     command.add_option("--exposure", exposure, "Stops by which a PNG is brightened")->type_name("F");
+    return scene;
+}
+
+bool SceneArguments::has_overrides() const {
+    return !size.empty() || spp || depth || !integrator.empty() || !crop.empty() || seed || exposure;
 }
 
 Scene SceneArguments::load() const {
@@ -110,6 +116,11 @@ Scene SceneArguments::load() const {
 }
 
 void DeviceArguments::add_to(CLI::App& command) {
+    add_without_memory_to(command);
+    command.add_option("--mem-limit", mem_limit, "Device memory that may be used, as in 512M")->type_name("SIZE");
+}
+
+void DeviceArguments::add_without_memory_to(CLI::App& command) {
     command.add_option("--device", device, "Device by index or part of its name; `raymill devices` lists them")
         ->type_name("INDEX|NAME");
     command.add_option("--threads", threads, "Compute units to use; all by default")
@@ -121,7 +132,6 @@ void DeviceArguments::add_to(CLI::App& command) {
     command.add_option("--work-group", work_group, "Work-items of a group; the image does not depend on it")
         ->type_name("N")
         ->check(CLI::Range(1u, 1u << 20));
-    command.add_option("--mem-limit", mem_limit, "Device memory that may be used, as in 512M")->type_name("SIZE");
     static const std::map<std::string, Traversal> traversals = {
         {"auto", Traversal::automatic}, {"packet", Traversal::packet}, {"single", Traversal::single}};
     command
