@@ -50,10 +50,11 @@ void FrameCaptures::write(const Scene& scene, Renderer& renderer, const Frame& f
                            stage_name(found->stage), found->depth, recorder.launches(), found->items());
             continue;
         }
-        const std::string message =
-            fmt::format("--capture {},{}: this frame has {} launches of {} at depth {}{}", request.depth,
-                        stage_name(request.stage), recorder.launches(), stage_name(request.stage), request.depth,
-                        request.launch ? fmt::format(", and no launch {}", *request.launch) : std::string());
+        const std::string message = fmt::format(
+            "--capture {},{}: this frame has no {} of {} at depth {}{}", request.depth, stage_name(request.stage),
+            request.launch ? fmt::format("launch {}", *request.launch) : std::string("launch"),
+            stage_name(request.stage), request.depth,
+            recorder.launches() > 0 ? fmt::format(", the last is {}", recorder.launches() - 1) : "");
         if (frame.finished == 1) throw UsageError(message);
         fmt::print(stderr, "interrupted: {}\n", message);
     }
