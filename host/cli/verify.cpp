@@ -43,9 +43,10 @@ int conclude(const std::vector<verify::StageReport>& reports) {
 
 int verify_captured(const VerifyArguments& arguments) try {
     if (arguments.scene.has_overrides())
-        throw UsageError(fmt::format("--capture {}: size, samples, depth, crop and seed are those of the captured "
-                                     "frame; leave out the flags that say others",
-                                     arguments.capture));
+        throw UsageError(
+            fmt::format("--capture {}: size, samples, depth, crop and seed are those of the captured "
+                        "frame; leave out the flags that say others",
+                        arguments.capture));
     const RenderOptions options = arguments.device.options();
     const auto [capture, scene] = capture::load_capture(arguments.capture, arguments.scene.file, "SCENE");
     print_warnings(scene.warnings);
