@@ -24,7 +24,10 @@ struct SceneArguments {
     std::optional<std::uint32_t> seed;
     std::optional<double> exposure;
 
-    void add_to(CLI::App& command);
+    /// Returns the option of the file, which is required.
+    CLI::Option* add_to(CLI::App& command);
+    /// Whether anything but the file is given.
+    bool has_overrides() const;
     /// Loads the scene and applies the overrides. Throws SceneError, UsageError.
     Scene load() const;
 };
@@ -41,6 +44,8 @@ struct DeviceArguments {
     std::string kernel_dir;
 
     void add_to(CLI::App& command);
+    /// All but --mem-limit, for what allocates no more than it needs.
+    void add_without_memory_to(CLI::App& command);
     Device open() const { return open_device(device, threads); }
     BvhOptions bvh_options() const { return {threads, bvh}; }
     /// Throws UsageError.

@@ -14,6 +14,7 @@ Command add_check_command(CLI::App& app);
 Command add_devices_command(CLI::App& app);
 Command add_explain_command(CLI::App& app);
 Command add_verify_command(CLI::App& app);
+Command add_replay_command(CLI::App& app);
 Command add_scene_command(CLI::App& app);
 
 }  // namespace raymill

@@ -10,6 +10,7 @@
 #include "cli/aov.hpp"
 #include "cli/arguments.hpp"
 #include "cli/commands.hpp"
+#include "cli/frame_captures.hpp"
 #include "cli/progress.hpp"
 #include "cli/run_profile.hpp"
 #include "common/files.hpp"
@@ -31,6 +32,7 @@ struct RenderArguments {
     bool stats = false;
     std::string stats_file;
     std::string trace_file;
+    std::vector<std::string> captures;
     bool quiet = false;
 };
 
@@ -105,13 +107,15 @@ profile::Detail detail_of(const RenderArguments& arguments) {
 }
 
 /// Throws UsageError where one file would replace another, OutputError where one could not be written.
-void check_outputs(const RenderArguments& arguments) {
+void check_outputs(const RenderArguments& arguments, const FrameCaptures& captures) {
     std::set<std::filesystem::path> seen;
-    for (const std::string& file : {arguments.output, arguments.stats_file, arguments.trace_file}) {
+    std::vector<std::string> files = captures.files();
+    files.insert(files.end(), {arguments.output, arguments.stats_file, arguments.trace_file});
+    for (const std::string& file : files) {
         if (file.empty()) continue;
         if (!seen.insert(std::filesystem::path(file).lexically_normal()).second)
             throw UsageError(
-                fmt::format("{} is to hold two things at once: give -o, --stats-json and --trace files of "
+                fmt::format("{} is to hold two things at once: give -o, --stats-json, --trace and --capture files of "
                             "their own",
                             file));
         check_writable(file);
@@ -137,6 +141,7 @@ Frame render_frame(const RenderArguments& arguments, Renderer& renderer) {
 
 int render(RenderArguments arguments) {
     RunClock clock;
+    FrameCaptures captures(arguments.captures);
     if (arguments.output.empty()) arguments.output = default_output(arguments.scene.file);
     const std::vector<std::string> aovs = parse_aovs(arguments.aovs);
     RenderOptions options = arguments.device.options();
@@ -146,7 +151,8 @@ int render(RenderArguments arguments) {
         throw UsageError(fmt::format("{}: a PNG has 8 bits a channel and no layers; give an output that ends in .exr",
                                      arguments.half ? "--half" : "--aov"));
     const Scene scene = clock.timeline.measure("load scene", [&] { return arguments.scene.load(); });
-    check_outputs(arguments);
+    captures.check(scene);
+    check_outputs(arguments, captures);
     if (!arguments.quiet) print_warnings(scene.warnings);
 
     const Device device = clock.timeline.measure("open device", [&] { return arguments.device.open(); });
@@ -155,9 +161,11 @@ int render(RenderArguments arguments) {
     });
     if (!arguments.quiet) warn_of_dropped(bvh.statistics);
     Renderer renderer(device, scene, bvh, options);
+    captures.observe(device, renderer);
     Frame frame =
         clock.timeline.measure(std::string(profile::render_span), [&] { return render_frame(arguments, renderer); });
     if (!arguments.quiet) warn_of_film(frame);
+    captures.write(scene, renderer, frame, arguments.quiet);
     clock.timeline.measure("write picture", [&] { write_picture(arguments, scene, frame, aovs); });
     if (detail_of(arguments) != profile::Detail::none)
         report(arguments, clock.read(scene, device, options, renderer, frame));
@@ -188,12 +196,22 @@ Command add_render_command(CLI::App& app) {
         ->type_name("FILE");
     command.add_option("--trace", arguments->trace_file, "Timeline of the run for Perfetto and chrome://tracing")
         ->type_name("FILE");
+    command
+        .add_option("--capture", arguments->captures,
+                    "Write the input queue of one launch of a stage, for raymill replay and verify; more than once "
+                    "for several")
+        ->type_name("DEPTH[:LAUNCH],STAGE,FILE")
+        ->allow_extra_args(false);
     command.add_flag("--quiet", arguments->quiet, "Print errors only");
     command.footer(
         "Examples:\n"
         "  raymill render scenes/first-light.toml -o first-light.png\n"
         "  raymill render model.obj --size 1280x720 --spp 16 -o model.exr\n"
-        "  raymill render scene.toml --crop 0.25,0.75,0.25,0.75 --stats\n\n"
+        "  raymill render scene.toml --crop 0.25,0.75,0.25,0.75 --stats\n"
+        "  raymill render scene.toml --capture 1,intersect,queue.wave\n\n"
+        "--capture: STAGE is generate, intersect, shade, shadow or secondary, working on rays of DEPTH. LAUNCH counts\n"
+        "the launches of that stage at that depth from 0 on; without it, the fullest is written: that with the most\n"
+        "items in its queue, and of several such, that which writes the most.\n\n"
         "Exit status: 0 done; 1 the render failed; 2 bad arguments or bad input;\n"
         "130 interrupted, with what was rendered saved.");
     return [arguments] { return render(*arguments); };

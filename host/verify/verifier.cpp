@@ -53,11 +53,33 @@ class Verifier {
     void take(const Wave& wave) {
         if (wave.generated) take_camera_rays(wave);
         take_hits(wave);
-        take_shading(wave);
+        take_shading(wave, {0, static_cast<uint>(slots_.size())});
         take_arrivals(wave);
         if (spawns_secondary_rays(scene_) && wave.depth < scene_.settings.depth) take_children(wave);
         ledger_.add(wave);
         for (const std::string& fault : wave.replay_faults) shade_.fail(fault);
+    }
+
+    /// The items of one stage alone.
+    const StageReport& take_stage(const Wave& wave, profile::Stage stage, SlotRange slots) {
+        switch (stage) {
+            case profile::Stage::generate:
+                take_camera_rays(wave);
+                return generate_;
+            case profile::Stage::intersect:
+                take_hits(wave);
+                return intersect_;
+            case profile::Stage::shade:
+                take_shading(wave, slots);
+                for (const std::string& fault : wave.replay_faults) shade_.fail(fault);
+                return shade_;
+            case profile::Stage::shadow:
+                take_arrivals(wave);
+                return shadow_;
+            default:
+                take_children(wave);
+                return secondary_;
+        }
     }
 
     std::vector<StageReport> finish(const Frame& frame) {
@@ -103,8 +125,8 @@ class Verifier {
             [&](std::size_t i) { return describe(wave.rays[chosen[i]]) + describe(wave.hits[chosen[i]]); });
     }
 
-    /// Items are the hits' ambient and emission, then every hit's every light sample.
-    void take_shading(const Wave& wave) {
+    /// Items are each hit's ambient and emission, where the range has the first light sample, and its light samples.
+    void take_shading(const Wave& wave, SlotRange range) {
         std::vector<std::size_t> hits;
         for (std::size_t i = 0; i < wave.hits.size(); ++i)
             if (wave.hits[i].primitive != NO_INDEX) hits.push_back(i);
@@ -116,27 +138,30 @@ class Verifier {
                                         item.hit, item.slot));
             place = &item;
         }
-        const std::size_t parts = slots_.size() + 1;
+        const std::size_t unshadowed = range.first == 0 ? 1 : 0;
+        const std::size_t parts = unshadowed + range.count;
         shade_.count(hits.size() * parts);
         std::vector<Comparison> results(hits.size() * parts);
         tbb::parallel_for(std::size_t{0}, hits.size(), [&](std::size_t i) {
             const std::size_t item = hits[i];
             const HitContext context = hit_context(truth_, wave.rays[item], wave.hits[item]);
-            results[i * parts] = compare_unshadowed(truth_, context, wave.added[item]);
-            for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
+            if (unshadowed) results[i * parts] = compare_unshadowed(truth_, context, wave.added[item]);
+            for (std::size_t k = 0; k < range.count; ++k) {
+                const std::size_t slot = range.first + k;
                 const ShadowItem* shadow = sent[item * slots_.size() + slot];
-                results[i * parts + 1 + slot] =
+                results[i * parts + unshadowed + k] =
                     compare_shadow_ray(truth_, context, wave.rays[item], slots_[slot], shadow ? &shadow->ray : nullptr);
             }
         });
         for (std::size_t i = 0; i < results.size(); ++i) {
             const std::size_t item = hits[i / parts], part = i % parts;
             shade_.add(results[i], [&] {
-                const ShadowItem* shadow = part > 0 ? sent[item * slots_.size() + part - 1] : nullptr;
-                return describe(wave.rays[item]) + describe(wave.hits[item]) + (shadow ? describe(shadow->ray) : "") +
-                       (part > 0 ? fmt::format("  light {}, its sample {}\n", slots_[part - 1].light,
-                                               slots_[part - 1].sample)
-                                 : std::string("  ambient and emission\n"));
+                const std::string hit = describe(wave.rays[item]) + describe(wave.hits[item]);
+                if (part < unshadowed) return hit + "  ambient and emission\n";
+                const std::size_t slot = range.first + part - unshadowed;
+                const ShadowItem* shadow = sent[item * slots_.size() + slot];
+                return hit + (shadow ? describe(shadow->ray) : "") +
+                       fmt::format("  light {}, its sample {}\n", slots_[slot].light, slots_[slot].sample);
             });
         }
     }
@@ -200,6 +225,14 @@ class Verifier {
 };
 
 }  // namespace
+
+StageReport verify_stage(const Scene& scene, const Wave& wave, profile::Stage stage, SlotRange slots,
+                         const VerifyOptions& options) {
+    RayCounts counts;
+    counts.camera = wave.rays.size();
+    counts.shadow = wave.shadow_rays.size();
+    return Verifier(scene, counts, options).take_stage(wave, stage, slots);
+}
 
 std::vector<StageReport> verify_frame(const Device& device, const Scene& scene, Renderer& renderer,
                                       const VerifyOptions& options) {

@@ -5,6 +5,7 @@
 
 #include "verify/film_ledger.hpp"
 #include "verify/report.hpp"
+#include "verify/wave_recorder.hpp"
 #include "wavefront/renderer.hpp"
 
 namespace raymill::verify {
@@ -14,6 +15,11 @@ struct VerifyOptions {
     /// primitives for every ray. Beyond it, an evenly spread subset of the items is compared.
     std::uint64_t primitive_tests = 500'000'000;
 };
+
+/// One stage's items of a wave that holds what the stage read and wrote. slots: the light samples that shade went
+/// through; ambient and emission belong to the first.
+StageReport verify_stage(const Scene& scene, const Wave& wave, profile::Stage stage, SlotRange slots,
+                         const VerifyOptions& options);
 
 /// Renders the frame twice, the first time to count its rays. The renderer must keep ledger_planes().
 /// One report a kernel, in the order of the wavefront loop, and one of the film's integers.

@@ -27,15 +27,16 @@ void add(Contribution& sum, const Contribution& more) {
 }  // namespace
 
 WaveRecorder::WaveRecorder(const Device& device, Renderer& renderer, Receiver receiver)
-    : device_(device),
-      renderer_(renderer),
-      replay_(device, renderer.stages(), renderer.device_scene()),
-      receiver_(std::move(receiver)) {
+    : WaveRecorder(device, renderer.stages(), renderer.device_scene(), std::move(receiver)) {
+    renderer_ = &renderer;
     renderer.observe([this](const char* stage, const WaveView& view) { see(stage, view); });
 }
 
+WaveRecorder::WaveRecorder(const Device& device, Stages& stages, const DeviceScene& scene, Receiver receiver)
+    : device_(device), replay_(device, stages, scene), receiver_(std::move(receiver)) {}
+
 WaveRecorder::~WaveRecorder() {
-    renderer_.observe({});
+    if (renderer_) renderer_->observe({});
 }
 
 void WaveRecorder::finish() {

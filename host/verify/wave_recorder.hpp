@@ -37,21 +37,24 @@ class WaveRecorder {
 
     /// Becomes the renderer's observer until it is destroyed. The references must outlive it.
     WaveRecorder(const Device& device, Renderer& renderer, Receiver receiver);
+    /// Sees what it is shown by see().
+    WaveRecorder(const Device& device, Stages& stages, const DeviceScene& scene, Receiver receiver);
     ~WaveRecorder();
     WaveRecorder(const WaveRecorder&) = delete;
     WaveRecorder& operator=(const WaveRecorder&) = delete;
 
+    /// A WaveObserver. A wave begins with its "generate", or else with its "intersect".
+    void see(const std::string& stage, const WaveView& view);
     /// Hands over the last wave; call when the frame is done.
     void finish();
 
   private:
-    void see(const std::string& stage, const WaveView& view);
     void begin(const WaveView& view);
     void take_hits(const WaveView& view);
     void take_shadow_rays(const WaveView& view);
 
     const Device& device_;
-    Renderer& renderer_;
+    Renderer* renderer_ = nullptr;  // that it observes
     ItemReplay replay_;
     Receiver receiver_;
     std::optional<Wave> wave_;

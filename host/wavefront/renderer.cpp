@@ -200,7 +200,8 @@ void Renderer::show(const char* stage, const Batch& batch, SlotRange slots, cons
     if (!observer_) return;
     device_.queue.finish();
     const QueueRange<Ray> rays{queues_[static_cast<std::size_t>(batch.depth)], batch.first, batch.count};
-    observer_(stage, {batch, rays, hits_, slots, shadow_queue_, children, children_count, film_});
+    const std::uint64_t first_sample = counts_.camera - std::min<std::uint64_t>(counts_.camera, batch.count);
+    observer_(stage, {batch, rays, hits_, slots, shadow_queue_, children, children_count, film_, first_sample});
 }
 
 }  // namespace raymill

@@ -63,6 +63,7 @@ struct WaveView {
     const Buffer<Ray>* children;     // after secondary
     uint children_count;
     const Film& film;
+    std::uint64_t first_sample;  // camera sample of the first ray, after generate
 };
 
 /// Called after each of "generate", "intersect", "shade", "shadow" and "secondary" has run, when the device is idle.

@@ -5,11 +5,17 @@
 #include <vector>
 
 #include "embree_side.hpp"
+#include "profile/statistics.hpp"
+#include "profile/stopwatch.hpp"
 #include "raymill_side.hpp"
-#include "statistics.hpp"
-#include "stopwatch.hpp"
 
 namespace raymill::bench {
+
+using profile::Clock;
+using profile::geometric_mean;
+using profile::Quartiles;
+using profile::quartiles;
+using profile::seconds_of;
 
 /// More rays than this share may not find another primitive, or another visibility: rays through edges that two
 /// triangles share belong to either, everything else is an error.

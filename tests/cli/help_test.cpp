@@ -16,23 +16,47 @@ void expect_help(const std::vector<std::string>& arguments, const std::vector<st
 
 TEST(help, of_the_program_names_every_command) {
     for (const char* flag : {"--help", "-h"})
-        expect_help({flag}, {"render", "check", "devices", "explain", "verify", "scene", "--version", "raymill COMMAND --help"});
+        expect_help({flag}, {"render", "check", "devices", "explain", "verify", "replay", "scene", "--version",
+                             "raymill COMMAND --help"});
 }
 
 TEST(help, of_render_names_its_flags_and_statuses) {
-    expect_help({"render", "--help"},
-                {"SCENE",        "--output",     "--size",       "WxH",         "--spp",
-                 "--depth",      "--integrator", "--crop",       "x0,x1,y0,y1", "--seed",
-                 "--exposure",   "--half",       "--aov",        "--device",     "--threads",   "--queue-capacity",
-                 "--work-group", "--mem-limit",  "--kernel-dir", "--stats", "--stats-json", "--trace", "--quiet",
-                 "130",          "Examples:"});
+    expect_help({"render", "--help"}, {"SCENE",
+                                       "--output",
+                                       "--size",
+                                       "WxH",
+                                       "--spp",
+                                       "--depth",
+                                       "--integrator",
+                                       "--crop",
+                                       "x0,x1,y0,y1",
+                                       "--seed",
+                                       "--exposure",
+                                       "--half",
+                                       "--aov",
+                                       "--device",
+                                       "--threads",
+                                       "--queue-capacity",
+                                       "--work-group",
+                                       "--mem-limit",
+                                       "--kernel-dir",
+                                       "--stats",
+                                       "--stats-json",
+                                       "--trace",
+                                       "--quiet",
+                                       "--capture",
+                                       "DEPTH[:LAUNCH],STAGE,FILE",
+                                       "130",
+                                       "Examples:"});
 }
 
 TEST(help, of_the_other_commands_names_what_they_take) {
     expect_help({"check", "--help"}, {"SCENE", "--mem-limit", "--size", "Example:"});
     expect_help({"devices", "--help"}, {"OpenCL"});
     expect_help({"explain", "--help"}, {"SCENE", "--pixel", "--sample", "--obj", "Exit status:", "Examples:"});
-    expect_help({"verify", "--help"}, {"SCENE", "--size", "Columns:", "Exit status:", "Examples:"});
+    expect_help({"verify", "--help"}, {"SCENE", "--size", "--capture", "Columns:", "Exit status:", "Examples:"});
+    expect_help({"replay", "--help"}, {"FILE", "--scene", "--repeats", "--clock", "--json", "--queue-capacity",
+                                       "--work-group", "--threads", "--traversal", "--kernel-dir", "Exit status:"});
     expect_help({"scene", "--help"}, {"MODEL", "Example:"});
 }
 

@@ -16,14 +16,19 @@
 #include "frames/picture.hpp"
 #include "frames/tracer.hpp"
 #include "image/image.hpp"
-#include "statistics.hpp"
-#include "stopwatch.hpp"
+#include "profile/statistics.hpp"
+#include "profile/stopwatch.hpp"
 #include "wavefront/renderer.hpp"
 
 namespace {
 
 using namespace raymill;
 using namespace raymill::bench;
+using profile::Clock;
+using profile::geometric_mean;
+using profile::Quartiles;
+using profile::quartiles;
+using profile::seconds_of;
 
 constexpr int failed = 1;
 constexpr int bad_input = 2;

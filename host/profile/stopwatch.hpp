@@ -3,7 +3,7 @@
 
 #include <functional>
 
-namespace raymill::bench {
+namespace raymill::profile {
 
 /// wall: what a user waits. processor: of all the program's threads, which other programs on the machine disturb less;
 /// with more than one thread it also counts those that wait in a loop.
@@ -12,4 +12,4 @@ enum class Clock { wall, processor };
 /// Seconds that `work` takes, after a pause in which the threads of what ran before fall asleep.
 double seconds_of(const std::function<void()>& work, Clock clock);
 
-}  // namespace raymill::bench
+}  // namespace raymill::profile

@@ -1,8 +1,8 @@
-#include "statistics.hpp"
+#include "profile/statistics.hpp"
 
 #include <gtest/gtest.h>
 
-namespace raymill::bench {
+namespace raymill::profile {
 
 TEST(Quartiles, of_an_odd_number_of_values_are_among_them) {
     const Quartiles q = quartiles({5, 1, 4, 2, 3});
@@ -41,4 +41,4 @@ TEST(GeometricMean, of_one_value_is_that_value) {
     EXPECT_NEAR(geometric_mean({3}), 3, 1e-14);
 }
 
-}  // namespace raymill::bench
+}  // namespace raymill::profile

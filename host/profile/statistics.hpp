@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace raymill::bench {
+namespace raymill::profile {
 
 struct Quartiles {
     double lower = 0;
@@ -18,4 +18,4 @@ Quartiles quartiles(std::vector<double> values);
 /// values: at least one, all positive.
 double geometric_mean(const std::vector<double>& values);
 
-}  // namespace raymill::bench
+}  // namespace raymill::profile

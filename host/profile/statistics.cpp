@@ -1,10 +1,10 @@
-#include "statistics.hpp"
+#include "profile/statistics.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 
-namespace raymill::bench {
+namespace raymill::profile {
 
 Quartiles quartiles(std::vector<double> values) {
     assert(!values.empty());
@@ -25,4 +25,4 @@ double geometric_mean(const std::vector<double>& values) {
     return std::exp(sum / static_cast<double>(values.size()));
 }
 
-}  // namespace raymill::bench
+}  // namespace raymill::profile

@@ -1,10 +1,10 @@
-#include "stopwatch.hpp"
+#include "profile/stopwatch.hpp"
 
 #include <chrono>
 #include <ctime>
 #include <thread>
 
-namespace raymill::bench {
+namespace raymill::profile {
 
 namespace {
 
@@ -26,4 +26,4 @@ double seconds_of(const std::function<void()>& work, Clock clock) {
     return seconds_now(clock) - start;
 }
 
-}  // namespace raymill::bench
+}  // namespace raymill::profile
