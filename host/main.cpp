@@ -31,12 +31,11 @@ int run(int argc, char** argv) {
     app.require_subcommand(1);
     app.footer(
         "`raymill COMMAND --help` tells more. Start with: raymill render scenes/first-light.toml -o first-light.png");
-    const std::pair<const char*, Command> commands[] = {{"render", add_render_command(app)},
-                                                        {"check", add_check_command(app)},
-                                                        {"devices", add_devices_command(app)},
-                                                        {"explain", add_explain_command(app)},
-                                                        {"verify", add_verify_command(app)},
-                                                        {"scene", add_scene_command(app)}};
+    const std::pair<const char*, Command> commands[] = {
+        {"render", add_render_command(app)},   {"profile", add_profile_command(app)},
+        {"check", add_check_command(app)},     {"devices", add_devices_command(app)},
+        {"explain", add_explain_command(app)}, {"verify", add_verify_command(app)},
+        {"scene", add_scene_command(app)}};
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& success) {

@@ -2,14 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <vector>
 
 namespace raymill {
 
 namespace {
-
 
 /// The whole text as a number, or nothing.
 template <class Number>
@@ -39,7 +38,8 @@ std::pair<int, int> parse_size(const std::string& text) {
         if (width && height && *width >= 1 && *height >= 1 && *width <= largest_side && *height <= largest_side)
             return {*width, *height};
     }
-    throw UsageError(fmt::format("--size {}: give width and height in pixels, 1 to {}, as in 640x480", text, largest_side));
+    throw UsageError(
+        fmt::format("--size {}: give width and height in pixels, 1 to {}, as in 640x480", text, largest_side));
 }
 
 Crop parse_crop(const std::string& text) {
@@ -52,9 +52,10 @@ Crop parse_crop(const std::string& text) {
         if (valid) values[i] = *value;
     }
     if (!valid || values[0] >= values[1] || values[2] >= values[3])
-        throw UsageError(fmt::format(
-            "--crop {}: give four fractions x0,x1,y0,y1 with 0 <= x0 < x1 <= 1 and 0 <= y0 < y1 <= 1, as in 0.25,0.75,0,1",
-            text));
+        throw UsageError(
+            fmt::format("--crop {}: give four fractions x0,x1,y0,y1 with 0 <= x0 < x1 <= 1 and 0 <= y0 < y1 <= 1, as "
+                        "in 0.25,0.75,0,1",
+                        text));
     return {values[0], values[1], values[2], values[3]};
 }
 
@@ -70,6 +71,30 @@ std::uint64_t parse_bytes(const std::string& text) {
     if (!value || unit.size() > 1 || (!unit.empty() && power == 0) || !(bytes >= 1) || bytes > 1e18)
         throw UsageError(fmt::format("--mem-limit {}: give a size in bytes, as in 512M or 2G", text));
     return static_cast<std::uint64_t>(bytes);
+}
+
+std::vector<std::uint32_t> parse_counts(const std::string& flag, const std::string& list, std::uint32_t largest,
+                                        const std::string& word) {
+    std::vector<std::uint32_t> counts;
+    for (std::string_view item : split(list, ',')) {
+        if (!word.empty() && item == word) {
+            counts.push_back(0);
+            continue;
+        }
+        const std::size_t units = std::string_view("kKmM").find(item.empty() ? ' ' : item.back());
+        const int shift = units == std::string_view::npos ? 0 : units < 2 ? 10 : 20;
+        if (shift > 0) item.remove_suffix(1);
+        const auto value = number<std::uint64_t>(item);
+        if (!value || *value < 1 || *value > largest || *value << shift > largest)
+            throw UsageError(
+                fmt::format("{} {}: give numbers from 1 to {}{}, with commas between them, as in 1k,64k,1M", flag, list,
+                            largest, word.empty() ? "" : fmt::format(" or {}", word)));
+        counts.push_back(static_cast<std::uint32_t>(*value << shift));
+    }
+    std::ranges::sort(counts);
+    const auto repeated = std::ranges::unique(counts);
+    counts.erase(repeated.begin(), repeated.end());
+    return counts;
 }
 
 void SceneArguments::add_to(CLI::App& command) {
@@ -104,23 +129,27 @@ Scene SceneArguments::load() const {
     if (window) settings.crop = *window;
     const PixelWindow rendered = crop_window(settings);
     if (rendered.width < 1 || rendered.height < 1)
-        throw UsageError(fmt::format("--crop {}: no pixel of the {} x {} image lies in it", crop, settings.width,
-                                     settings.height));
+        throw UsageError(
+            fmt::format("--crop {}: no pixel of the {} x {} image lies in it", crop, settings.width, settings.height));
     return scene;
 }
 
 void DeviceArguments::add_to(CLI::App& command) {
-    command.add_option("--device", device, "Device by index or part of its name; `raymill devices` lists them")
-        ->type_name("INDEX|NAME");
+    add_fixed_to(command);
     command.add_option("--threads", threads, "Compute units to use; all by default")
         ->type_name("N")
-        ->check(CLI::Range(1u, 65536u));
+        ->check(CLI::Range(1u, most_threads));
     command.add_option("--queue-capacity", queue_capacity, "Rays of a batch; the image does not depend on it")
         ->type_name("N")
-        ->check(CLI::Range(1u, 1u << 28));
+        ->check(CLI::Range(1u, largest_queue_capacity));
     command.add_option("--work-group", work_group, "Work-items of a group; the image does not depend on it")
         ->type_name("N")
-        ->check(CLI::Range(1u, 1u << 20));
+        ->check(CLI::Range(1u, largest_work_group));
+}
+
+void DeviceArguments::add_fixed_to(CLI::App& command) {
+    command.add_option("--device", device, "Device by index or part of its name; `raymill devices` lists them")
+        ->type_name("INDEX|NAME");
     command.add_option("--mem-limit", mem_limit, "Device memory that may be used, as in 512M")->type_name("SIZE");
     static const std::map<std::string, Traversal> traversals = {
         {"auto", Traversal::automatic}, {"packet", Traversal::packet}, {"single", Traversal::single}};

@@ -16,16 +16,23 @@ void expect_help(const std::vector<std::string>& arguments, const std::vector<st
 
 TEST(help, of_the_program_names_every_command) {
     for (const char* flag : {"--help", "-h"})
-        expect_help({flag}, {"render", "check", "devices", "explain", "verify", "scene", "--version", "raymill COMMAND --help"});
+        expect_help({flag}, {"render", "profile", "check", "devices", "explain", "verify", "scene", "--version",
+                             "raymill COMMAND --help"});
 }
 
 TEST(help, of_render_names_its_flags_and_statuses) {
-    expect_help({"render", "--help"},
-                {"SCENE",        "--output",     "--size",       "WxH",         "--spp",
-                 "--depth",      "--integrator", "--crop",       "x0,x1,y0,y1", "--seed",
-                 "--exposure",   "--half",       "--aov",        "--device",     "--threads",   "--queue-capacity",
-                 "--work-group", "--mem-limit",  "--kernel-dir", "--stats", "--stats-json", "--trace", "--quiet",
-                 "130",          "Examples:"});
+    expect_help(
+        {"render", "--help"},
+        {"SCENE",     "--output",         "--size",       "WxH",         "--spp",        "--depth", "--integrator",
+         "--crop",    "x0,x1,y0,y1",      "--seed",       "--exposure",  "--half",       "--aov",   "--device",
+         "--threads", "--queue-capacity", "--work-group", "--mem-limit", "--kernel-dir", "--stats", "--stats-json",
+         "--trace",   "--quiet",          "130",          "Examples:"});
+}
+
+TEST(help, of_profile_names_its_lists_files_and_statuses) {
+    expect_help({"profile", "--help"},
+                {"SCENE", "--queue-capacity", "--work-group", "--threads", "LIST", "--repeats", "--output",
+                 "--mem-limit", "profile.csv", "profile.json", "trace.json", "report.html", "130", "Examples:"});
 }
 
 TEST(help, of_the_other_commands_names_what_they_take) {
