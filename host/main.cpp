@@ -32,10 +32,10 @@ int run(int argc, char** argv) {
     app.footer(
         "`raymill COMMAND --help` tells more. Start with: raymill render scenes/first-light.toml -o first-light.png");
     const std::pair<const char*, Command> commands[] = {
-        {"render", add_render_command(app)},   {"check", add_check_command(app)},
-        {"devices", add_devices_command(app)}, {"explain", add_explain_command(app)},
-        {"verify", add_verify_command(app)},   {"replay", add_replay_command(app)},
-        {"scene", add_scene_command(app)}};
+        {"render", add_render_command(app)},   {"profile", add_profile_command(app)},
+        {"check", add_check_command(app)},     {"devices", add_devices_command(app)},
+        {"explain", add_explain_command(app)}, {"verify", add_verify_command(app)},
+        {"replay", add_replay_command(app)},   {"scene", add_scene_command(app)}};
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& success) {

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <vector>
 
 namespace raymill {
 
@@ -73,6 +73,30 @@ std::uint64_t parse_bytes(const std::string& text) {
     return static_cast<std::uint64_t>(bytes);
 }
 
+std::vector<std::uint32_t> parse_counts(const std::string& flag, const std::string& list, std::uint32_t largest,
+                                        const std::string& word) {
+    std::vector<std::uint32_t> counts;
+    for (std::string_view item : split(list, ',')) {
+        if (!word.empty() && item == word) {
+            counts.push_back(0);
+            continue;
+        }
+        const std::size_t units = std::string_view("kKmM").find(item.empty() ? ' ' : item.back());
+        const int shift = units == std::string_view::npos ? 0 : units < 2 ? 10 : 20;
+        if (shift > 0) item.remove_suffix(1);
+        const auto value = number<std::uint64_t>(item);
+        if (!value || *value < 1 || *value > largest || *value << shift > largest)
+            throw UsageError(
+                fmt::format("{} {}: give numbers from 1 to {}{}, with commas between them, as in 1k,64k,1M", flag, list,
+                            largest, word.empty() ? "" : fmt::format(" or {}", word)));
+        counts.push_back(static_cast<std::uint32_t>(*value << shift));
+    }
+    std::ranges::sort(counts);
+    const auto repeated = std::ranges::unique(counts);
+    counts.erase(repeated.begin(), repeated.end());
+    return counts;
+}
+
 CLI::Option* SceneArguments::add_to(CLI::App& command) {
     CLI::Option* const scene = command.add_option("SCENE", file, "Scene file (.toml) or bare model (.obj)")->required();
     command.add_option("--size", size, "Image size in pixels, as in 640x480")->type_name("WxH");
@@ -117,21 +141,34 @@ Scene SceneArguments::load() const {
 
 void DeviceArguments::add_to(CLI::App& command) {
     add_without_memory_to(command);
+    add_memory_to(command);
+}
+
+void DeviceArguments::add_memory_to(CLI::App& command) {
     command.add_option("--mem-limit", mem_limit, "Device memory that may be used, as in 512M")->type_name("SIZE");
 }
 
 void DeviceArguments::add_without_memory_to(CLI::App& command) {
-    command.add_option("--device", device, "Device by index or part of its name; `raymill devices` lists them")
-        ->type_name("INDEX|NAME");
+    add_what_never_varies_to(command);
     command.add_option("--threads", threads, "Compute units to use; all by default")
         ->type_name("N")
-        ->check(CLI::Range(1u, 65536u));
+        ->check(CLI::Range(1u, most_threads));
     command.add_option("--queue-capacity", queue_capacity, "Rays of a batch; the image does not depend on it")
         ->type_name("N")
-        ->check(CLI::Range(1u, 1u << 28));
+        ->check(CLI::Range(1u, largest_queue_capacity));
     command.add_option("--work-group", work_group, "Work-items of a group; the image does not depend on it")
         ->type_name("N")
-        ->check(CLI::Range(1u, 1u << 20));
+        ->check(CLI::Range(1u, largest_work_group));
+}
+
+void DeviceArguments::add_fixed_to(CLI::App& command) {
+    add_what_never_varies_to(command);
+    add_memory_to(command);
+}
+
+void DeviceArguments::add_what_never_varies_to(CLI::App& command) {
+    command.add_option("--device", device, "Device by index or part of its name; `raymill devices` lists them")
+        ->type_name("INDEX|NAME");
     static const std::map<std::string, Traversal> traversals = {
         {"auto", Traversal::automatic}, {"packet", Traversal::packet}, {"single", Traversal::single}};
     command

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "bvh/bvh.hpp"
 #include "device/device.hpp"
@@ -32,6 +33,11 @@ struct SceneArguments {
     Scene load() const;
 };
 
+// What --queue-capacity, --work-group and --threads accept, from 1 on.
+inline constexpr std::uint32_t largest_queue_capacity = 1u << 28;
+inline constexpr std::uint32_t largest_work_group = 1u << 20;
+inline constexpr std::uint32_t most_threads = 65536;
+
 /// Which device renders, and in how much memory.
 struct DeviceArguments {
     std::string device;
@@ -46,6 +52,11 @@ struct DeviceArguments {
     void add_to(CLI::App& command);
     /// All but --mem-limit, for what allocates no more than it needs.
     void add_without_memory_to(CLI::App& command);
+    /// All but the threads, the queue capacity and the work-group.
+    void add_fixed_to(CLI::App& command);
+    void add_memory_to(CLI::App& command);
+    /// Device, kernels, traversal and hierarchy.
+    void add_what_never_varies_to(CLI::App& command);
     Device open() const { return open_device(device, threads); }
     BvhOptions bvh_options() const { return {threads, bvh}; }
     /// Throws UsageError.
@@ -60,5 +71,10 @@ Crop parse_crop(const std::string& text);
 
 /// "512M", "2GiB", "1000000" to bytes: K, M, G and T are powers of 1024. Throws UsageError.
 std::uint64_t parse_bytes(const std::string& text);
+
+/// "1k,64k,1M" to numbers from 1 to `largest`, sorted, each once: k is 1024, M 1024 squared. A word that is `word`, if
+/// that is not empty, stands for 0. `flag` is named in the error. Throws UsageError.
+std::vector<std::uint32_t> parse_counts(const std::string& flag, const std::string& list, std::uint32_t largest,
+                                        const std::string& word = {});
 
 }  // namespace raymill

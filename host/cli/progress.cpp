@@ -25,15 +25,15 @@ constexpr auto redraw_interval = std::chrono::milliseconds(100);
 
 ProgressBar::ProgressBar(bool enabled) : enabled_(enabled && isatty(STDERR_FILENO)) {}
 
-void ProgressBar::show(double share) {
+void ProgressBar::show(double share, const std::string& note) {
     const Clock::time_point now = Clock::now();
     if (!enabled_ || now - last_ < redraw_interval) return;
     last_ = now;
     drawn_ = true;
     const double elapsed = std::chrono::duration<double>(now - start_).count();
     const int filled = static_cast<int>(share * bar_width);
-    fmt::print(stderr, "\r[{:=<{}}{: <{}}] {:3.0f}%  {:.1f} s left \033[K", "", filled, "", bar_width - filled,
-               100 * share, share > 0 ? elapsed * (1 - share) / share : 0.0);
+    fmt::print(stderr, "\r[{:=<{}}{: <{}}] {:3.0f}%  {:.1f} s left  {}\033[K", "", filled, "", bar_width - filled,
+               100 * share, share > 0 ? elapsed * (1 - share) / share : 0.0, note);
     std::fflush(stderr);
 }
 
@@ -57,6 +57,8 @@ InterruptGuard::~InterruptGuard() {
     std::signal(SIGTERM, SIG_DFL);
 }
 
-bool InterruptGuard::interrupted() const { return interrupt_flag != 0; }
+bool InterruptGuard::interrupted() const {
+    return interrupt_flag != 0;
+}
 
 }  // namespace raymill

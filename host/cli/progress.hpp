@@ -13,8 +13,8 @@ class ProgressBar {
   public:
     explicit ProgressBar(bool enabled);
     ~ProgressBar() { clear(); }
-    /// share in [0, 1]. Redraws at most ten times a second.
-    void show(double share);
+    /// share in [0, 1]; note: what is going on. Redraws at most ten times a second.
+    void show(double share, const std::string& note = {});
     /// Wipes the bar, so that the next line starts clean.
     void clear();
 

@@ -48,7 +48,8 @@ MemoryPlan plan_memory(const Scene& scene, const Bvh& bvh, const FilmPlanes& pla
     const auto fits = [&](const MemoryPlan& plan) {
         return plan.total() <= limit && std::max(largest_queue(plan), plan.film) <= device.largest_buffer;
     };
-    MemoryPlan plan = plan_with(scene, bvh, planes, request.queue_capacity > 0 ? request.queue_capacity : default_capacity);
+    MemoryPlan plan =
+        plan_with(scene, bvh, planes, request.queue_capacity > 0 ? request.queue_capacity : default_capacity);
     if (request.queue_capacity == 0)
         for (std::uint64_t c = default_capacity; !fits(plan) && c > smallest_default; c /= 2)
             plan = plan_with(scene, bvh, planes, c / 2);
@@ -60,6 +61,11 @@ MemoryPlan plan_memory(const Scene& scene, const Bvh& bvh, const FilmPlanes& pla
             request.limit > 0 ? "--mem-limit" : device.name,
             request.queue_capacity > 0 ? "--queue-capacity, --depth or --size" : "--depth or --size"));
     return plan;
+}
+
+std::uint64_t MemoryPlan::wave_bytes() const {
+    const std::uint64_t rays_and_children = queues > 1 ? 3 : 1;  // a ray has two children at most
+    return queue_capacity * rays_and_children * sizeof(Ray) + hits + shadow_queue;
 }
 
 std::string human_bytes(std::uint64_t bytes) {

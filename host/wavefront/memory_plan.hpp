@@ -23,6 +23,8 @@ struct MemoryPlan {
     std::uint64_t film = 0;  // integer sums and resolved pixels
 
     std::uint64_t total() const { return geometry + textures + ray_queues + hits + shadow_queue + film; }
+    /// What the stages of one wave go through, beside scene and film: its rays, hits, shadow rays and children.
+    std::uint64_t wave_bytes() const;
 };
 
 struct MemoryRequest {

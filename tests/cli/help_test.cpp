@@ -16,8 +16,8 @@ void expect_help(const std::vector<std::string>& arguments, const std::vector<st
 
 TEST(help, of_the_program_names_every_command) {
     for (const char* flag : {"--help", "-h"})
-        expect_help({flag}, {"render", "check", "devices", "explain", "verify", "replay", "scene", "--version",
-                             "raymill COMMAND --help"});
+        expect_help({flag}, {"render", "profile", "check", "devices", "explain", "verify", "replay", "scene",
+                             "--version", "raymill COMMAND --help"});
 }
 
 TEST(help, of_render_names_its_flags_and_statuses) {
@@ -48,6 +48,12 @@ TEST(help, of_render_names_its_flags_and_statuses) {
                                        "DEPTH[:LAUNCH],STAGE,FILE",
                                        "130",
                                        "Examples:"});
+}
+
+TEST(help, of_profile_names_its_lists_files_and_statuses) {
+    expect_help({"profile", "--help"},
+                {"SCENE", "--queue-capacity", "--work-group", "--threads", "LIST", "--repeats", "--output",
+                 "--mem-limit", "profile.csv", "profile.json", "trace.json", "report.html", "130", "Examples:"});
 }
 
 TEST(help, of_the_other_commands_names_what_they_take) {
