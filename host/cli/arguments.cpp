@@ -10,7 +10,6 @@ namespace raymill {
 
 namespace {
 
-
 /// The whole text as a number, or nothing.
 template <class Number>
 std::optional<Number> number(std::string_view text) {
@@ -39,7 +38,8 @@ std::pair<int, int> parse_size(const std::string& text) {
         if (width && height && *width >= 1 && *height >= 1 && *width <= largest_side && *height <= largest_side)
             return {*width, *height};
     }
-    throw UsageError(fmt::format("--size {}: give width and height in pixels, 1 to {}, as in 640x480", text, largest_side));
+    throw UsageError(
+        fmt::format("--size {}: give width and height in pixels, 1 to {}, as in 640x480", text, largest_side));
 }
 
 Crop parse_crop(const std::string& text) {
@@ -52,9 +52,10 @@ Crop parse_crop(const std::string& text) {
         if (valid) values[i] = *value;
     }
     if (!valid || values[0] >= values[1] || values[2] >= values[3])
-        throw UsageError(fmt::format(
-            "--crop {}: give four fractions x0,x1,y0,y1 with 0 <= x0 < x1 <= 1 and 0 <= y0 < y1 <= 1, as in 0.25,0.75,0,1",
-            text));
+        throw UsageError(
+            fmt::format("--crop {}: give four fractions x0,x1,y0,y1 with 0 <= x0 < x1 <= 1 and 0 <= y0 < y1 <= 1, as "
+                        "in 0.25,0.75,0,1",
+                        text));
     return {values[0], values[1], values[2], values[3]};
 }
 
@@ -73,7 +74,7 @@ std::uint64_t parse_bytes(const std::string& text) {
 }
 
 void SceneArguments::add_to(CLI::App& command) {
-    command.add_option("SCENE", file, "Scene file (.toml) or bare model (.obj)")->required();
+    command.add_option("SCENE", file, "Scene file (.toml) or bare model (.obj, .ply, .gltf, .glb)")->required();
     command.add_option("--size", size, "Image size in pixels, as in 640x480")->type_name("WxH");
     command.add_option("--spp", spp, "Samples per pixel, stratified")->type_name("N")->check(CLI::Range(1, 1 << 20));
     command.add_option("--depth", depth, "Recursion limit; 0 is local illumination with shadows")
@@ -104,8 +105,8 @@ Scene SceneArguments::load() const {
     if (window) settings.crop = *window;
     const PixelWindow rendered = crop_window(settings);
     if (rendered.width < 1 || rendered.height < 1)
-        throw UsageError(fmt::format("--crop {}: no pixel of the {} x {} image lies in it", crop, settings.width,
-                                     settings.height));
+        throw UsageError(
+            fmt::format("--crop {}: no pixel of the {} x {} image lies in it", crop, settings.width, settings.height));
     return scene;
 }
 
