@@ -98,7 +98,8 @@ std::vector<std::uint32_t> parse_counts(const std::string& flag, const std::stri
 }
 
 CLI::Option* SceneArguments::add_to(CLI::App& command) {
-    CLI::Option* const scene = command.add_option("SCENE", file, "Scene file (.toml) or bare model (.obj)")->required();
+    CLI::Option* const scene =
+        command.add_option("SCENE", file, "Scene file (.toml) or bare model (.obj, .ply, .gltf, .glb)")->required();
     command.add_option("--size", size, "Image size in pixels, as in 640x480")->type_name("WxH");
     command.add_option("--spp", spp, "Samples per pixel, stratified")->type_name("N")->check(CLI::Range(1, 1 << 20));
     command.add_option("--depth", depth, "Recursion limit; 0 is local illumination with shadows")

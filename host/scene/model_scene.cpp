@@ -6,8 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-
-#include "scene/obj_loader.hpp"
+#include <stdexcept>
 
 namespace raymill {
 namespace {
@@ -46,8 +45,11 @@ Box bounds_of(const std::vector<dvec3>& points) {
     return box;
 }
 
+/// Whether it shines more than it could reflect of the lights: a faint glow makes no lamp.
 bool is_lamp(const Scene& scene, const Triangle& triangle) {
-    return scene.materials[triangle.material].emission != glm::vec3(0);
+    const SceneMaterial& material = scene.materials[triangle.material];
+    const glm::vec3 &e = material.emission, &d = material.diffuse;
+    return std::max({e.r, e.g, e.b}) > std::max({d.r, d.g, d.b});
 }
 
 /// The corners of the triangles that are lamps, or of those that are not.
@@ -129,8 +131,8 @@ dvec3 rounded(const dvec3& v) {
 
 struct ViewAxes {
     dvec3 right, up, back;  // back points from the model to the eye
-    explicit ViewAxes(const dvec3& towards_eye)
-        : right(glm::normalize(glm::cross(dvec3(0, 1, 0), towards_eye))),
+    explicit ViewAxes(const dvec3& towards_eye, const dvec3& upwards = {0, 1, 0})
+        : right(glm::normalize(glm::cross(upwards, towards_eye))),
           up(glm::cross(towards_eye, right)),
           back(towards_eye) {}
 };
@@ -190,13 +192,46 @@ std::string toml_text(const std::string& text) {
     return quoted + '"';
 }
 
-std::string light_toml(const std::variant<DirectionalLight, PointLight>& light) {
-    if (const auto* point = std::get_if<PointLight>(&light))
-        return fmt::format("[[light]]\ntype = \"point\"\nposition = {}\nintensity = {}\n\n",
-                           toml_vector(point->position), toml_number(point->intensity.x));
-    const auto& directional = std::get<DirectionalLight>(light);
-    return fmt::format("[[light]]\ntype = \"directional\"\ndirection = {}\nintensity = {}\n\n",
-                       toml_vector(directional.direction), toml_number(directional.intensity.x));
+/// A colour, as one number where it is grey.
+std::string toml_color(const glm::vec3& color) {
+    return color.r == color.g && color.g == color.b ? toml_number(color.r) : toml_vector(color);
+}
+
+/// The lights that models have: those of glTF, and those made up here.
+struct LightText {
+    std::string operator()(const AmbientLight& light) const {
+        return fmt::format("type = \"ambient\"\ncolor = {}\n", toml_color(light.color));
+    }
+    std::string operator()(const DirectionalLight& light) const {
+        return fmt::format("type = \"directional\"\ndirection = {}\nintensity = {}\n", toml_vector(light.direction),
+                           toml_color(light.intensity));
+    }
+    std::string operator()(const PointLight& light) const {
+        const bool attenuated = light.attenuation != glm::vec3(1, 0, 0);
+        return fmt::format("type = \"point\"\nposition = {}\nintensity = {}\n{}", toml_vector(light.position),
+                           toml_color(light.intensity), attenuated ? attenuation(light.attenuation) : "");
+    }
+    std::string operator()(const SpotLight& light) const {
+        return fmt::format(
+            "type = \"spot\"\nposition = {}\ndirection = {}\nintensity = {}\n{}inner_angle = {}\nouter_angle = {}\n",
+            toml_vector(light.position), toml_vector(light.direction), toml_color(light.intensity),
+            attenuation(light.attenuation), toml_number(light.inner_angle), toml_number(light.outer_angle));
+    }
+    template <class Other>
+    std::string operator()(const Other&) const {
+        throw std::logic_error("no model has such a light");
+    }
+    static std::string attenuation(const glm::vec3& coefficients) {
+        return fmt::format("attenuation = {}\n", toml_vector(coefficients));
+    }
+};
+
+std::string camera_toml(const Camera& camera) {
+    const bool orthographic = camera.projection == Projection::orthographic;
+    return fmt::format("[camera]\n{}eye = {}\nlook_at = {}\nup = {}\n{} = {}\n\n",
+                       orthographic ? "projection = \"orthographic\"\n" : "", toml_vector(camera.eye),
+                       toml_vector(camera.look_at), toml_vector(camera.up), orthographic ? "height" : "fov",
+                       toml_number(orthographic ? camera.height : camera.fov));
 }
 
 PointLight point_light(const dvec3& position, float intensity) {
@@ -216,14 +251,47 @@ dvec3 room_light(const Scene& scene, const Box& room) {
     return position;
 }
 
-void light_room(const Scene& scene, const Box& room, ModelFraming& framing) {
-    framing.key = point_light(room_light(scene, room), 0.7f);
-    framing.fill = point_light(framing.camera.eye, 0.3f);
+/// The largest light that reaches the point, as the sum over lights of what they shine there.
+double light_at(const std::vector<SceneLight>& lights, const dvec3& point, double least_distance) {
+    double sum = 0;
+    const auto add = [&](const glm::vec3& intensity, double distance) {
+        sum += std::max({intensity.r, intensity.g, intensity.b}) / (distance * distance);
+    };
+    for (const SceneLight& light : lights) {
+        if (const auto* d = std::get_if<DirectionalLight>(&light.light)) add(d->intensity, 1);
+        if (const auto* p = std::get_if<PointLight>(&light.light))
+            add(p->intensity, std::max(glm::distance(dvec3(p->position), point), least_distance));
+        if (const auto* s = std::get_if<SpotLight>(&light.light))
+            add(s->intensity, std::max(glm::distance(dvec3(s->position), point), least_distance));
+    }
+    return sum;
+}
+
+/// The stops that show a white surface in the middle of the box at 0.8, to a tenth.
+double exposure_for(const std::vector<SceneLight>& lights, const Box& box) {
+    constexpr double shown_as = 0.8, nearest = 0.25;  // of the box's diagonal: a lamp may hang in its very middle
+    const double light = light_at(lights, box.center(), nearest * glm::length(box.size()));
+    if (!(light > 0 && std::isfinite(light))) return 0;
+    return std::clamp(std::round(10 * std::log2(shown_as / light)) / 10, -100.0, 100.0);
+}
+
+AmbientLight ambient_light() {
+    return {glm::vec3(0.1f)};
+}
+
+std::vector<SceneLight> room_lights(const Scene& scene, const Box& room, const dvec3& eye) {
+    return {{point_light(room_light(scene, room), 0.7f)}, {point_light(eye, 0.3f)}, {ambient_light()}};
+}
+
+std::vector<SceneLight> studio_lights(const ViewAxes& view) {
+    return {{light_from(-0.5 * view.right + 0.8 * view.up + 0.8 * view.back, 0.9f)},
+            {light_from(0.8 * view.right + 0.2 * view.up + 0.6 * view.back, 0.3f)},
+            {ambient_light()}};
 }
 
 }  // namespace
 
-ModelFraming frame_model(const Scene& scene) {
+ModelFraming frame_model(const Scene& scene, const FileView& file) {
     ModelFraming framing;
     std::vector<dvec3> points = corners_of(scene, false);
     if (points.empty()) points = corners_of(scene, true);
@@ -235,56 +303,70 @@ ModelFraming frame_model(const Scene& scene) {
     const std::vector<dvec3> contents = contents_of_closed_room(scene, box, points);
     const double turn = glm::radians(30.0), rise = glm::radians(20.0);
     const dvec3 corner_view(std::sin(turn) * std::cos(rise), std::sin(rise), std::cos(turn) * std::cos(rise));
-    const ViewAxes view(is_open_room ? open : corner_view);
+    ViewAxes view(is_open_room ? open : corner_view);
 
     Camera& camera = framing.camera;
-    constexpr double margin = 1.05, before_wall = 0.95;
-    const RenderSettings settings;
-    const double tan_y = std::tan(glm::radians(camera.fov / 2));
-    const double tan_x = tan_y * settings.width / settings.height;
-    const std::vector<dvec3>& framed = contents.empty() ? points : contents;
-    const dvec3 center = bounds_of(framed).center();
-    double distance = margin * framing_distance(framed, center, view, tan_x, tan_y);
-    if (!contents.empty()) distance = std::min(distance, before_wall * way_inside(box, center, view.back));
-    camera.look_at = rounded(center);
-    camera.eye = rounded(center + distance * view.back);
-    camera.up = {0, 1, 0};
-
-    if (is_open_room || !contents.empty()) {
-        light_room(scene, box, framing);
+    if (file.camera) {
+        camera = *file.camera;
+        view = ViewAxes(glm::normalize(camera.eye - camera.look_at), camera.up);
     } else {
-        framing.key = light_from(-0.5 * view.right + 0.8 * view.up + 0.8 * view.back, 0.9f);
-        framing.fill = light_from(0.8 * view.right + 0.2 * view.up + 0.6 * view.back, 0.3f);
+        constexpr double margin = 1.05, before_wall = 0.95;
+        const RenderSettings settings;
+        const double tan_y = std::tan(glm::radians(camera.fov / 2));
+        const double tan_x = tan_y * settings.width / settings.height;
+        const std::vector<dvec3>& framed = contents.empty() ? points : contents;
+        const dvec3 center = bounds_of(framed).center();
+        double distance = margin * framing_distance(framed, center, view, tan_x, tan_y);
+        if (!contents.empty()) distance = std::min(distance, before_wall * way_inside(box, center, view.back));
+        camera.look_at = rounded(center);
+        camera.eye = rounded(center + distance * view.back);
+        camera.up = {0, 1, 0};
     }
-    framing.ambient.color = glm::vec3(0.1f);
+
+    if (!file.lights.empty()) {
+        framing.lights = file.lights;
+        framing.exposure = exposure_for(file.lights, box);
+    } else if (is_open_room || !contents.empty()) {
+        framing.lights = room_lights(scene, box, camera.eye);
+    } else {
+        framing.lights = studio_lights(view);
+    }
     return framing;
 }
 
+namespace {
+
+/// Appends the model's meshes and frames them; nothing where there are errors.
+std::optional<ModelFraming> load_and_frame(Loading& loading, const std::string& file) {
+    const FileView view = load_mesh_file(loading, file, {"mesh", std::nullopt, {}, std::nullopt}, {file});
+    if (!loading.errors.empty()) return std::nullopt;
+    return frame_model(loading.scene, view);
+}
+
+}  // namespace
+
 void read_model(Loading& loading, const std::string& file) {
-    Scene& scene = loading.scene;
-    load_obj(loading, file, {"mesh", std::nullopt, {}, std::nullopt}, {file});
-    if (!loading.errors.empty()) return;
-    const ModelFraming framing = frame_model(scene);
-    scene.camera = framing.camera;
-    const auto scene_light = [](const auto& light) { return SceneLight{light}; };
-    scene.lights = {std::visit(scene_light, framing.key), std::visit(scene_light, framing.fill), {framing.ambient}};
+    std::optional<ModelFraming> framing = load_and_frame(loading, file);
+    if (!framing) return;
+    loading.scene.camera = framing->camera;
+    loading.scene.lights = std::move(framing->lights);
+    loading.scene.settings.exposure = framing->exposure;
 }
 
 std::string model_scene_toml(const std::string& model_file) {
-    if (extension_of(model_file) != ".obj")
+    if (!is_mesh_file(model_file))
         throw SceneError({model_file},
-                         "a bare model (.obj) is what a scene file is made for; a scene file is one already");
+                         fmt::format("a bare model ({}) is what a scene file is made for; a scene file is "
+                                     "one already",
+                                     mesh_extensions));
     Loading loading;
     loading.scene.materials.emplace_back();
-    read_model(loading, model_file);
+    const std::optional<ModelFraming> framing = load_and_frame(loading, model_file);
     loading.finish(model_file);
-    const ModelFraming framing = frame_model(loading.scene);
-    const Camera& camera = framing.camera;
-    std::string text = "[render]\nsize = [640, 480]\n\n";
-    text += fmt::format("[camera]\neye = {}\nlook_at = {}\nup = {}\nfov = {}\n\n", toml_vector(camera.eye),
-                        toml_vector(camera.look_at), toml_vector(camera.up), toml_number(camera.fov));
-    text += light_toml(framing.key) + light_toml(framing.fill);
-    text += fmt::format("[[light]]\ntype = \"ambient\"\ncolor = {}\n\n", toml_number(framing.ambient.color.x));
+    std::string text = "[render]\nsize = [640, 480]\n";
+    if (framing->exposure != 0) text += fmt::format("exposure = {}\n", toml_number(framing->exposure));
+    text += "\n" + camera_toml(framing->camera);
+    for (const SceneLight& light : framing->lights) text += "[[light]]\n" + std::visit(LightText{}, light.light) + "\n";
     text += fmt::format("[[object]]\nshape = \"mesh\"\nfile = {}\n", toml_text(model_file));
     return text;
 }

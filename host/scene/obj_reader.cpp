@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <charconv>
-#include <cmath>
-#include <limits>
 #include <map>
 #include <string_view>
+
+#include "scene/number_text.hpp"
 
 namespace raymill {
 namespace {
@@ -33,21 +33,6 @@ std::string_view next_word(std::string_view& line) {
     line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
     if (line.starts_with('#')) line = {};
     return take_until(line, " \t");
-}
-
-bool parse_number(std::string_view word, double& value) {
-    if (word.starts_with('+')) word.remove_prefix(1);
-    const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (fault == std::errc::invalid_argument) return false;
-    if (fault == std::errc::result_out_of_range) value = std::strtod(std::string(word).c_str(), nullptr);
-    const std::string_view rest(end, static_cast<std::size_t>(word.data() + word.size() - end));
-    if (rest.starts_with("#INF"))
-        value = std::copysign(std::numeric_limits<double>::infinity(), value);
-    else if (rest.starts_with("#IND") || rest.starts_with("#QNAN") || rest.starts_with("#SNAN"))
-        value = std::numeric_limits<double>::quiet_NaN();
-    else
-        return rest.empty();
-    return true;
 }
 
 class Reader {

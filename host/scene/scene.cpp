@@ -7,6 +7,7 @@
 #include <new>
 
 #include "scene/loading.hpp"
+#include "scene/mesh_file.hpp"
 #include "scene/model_scene.hpp"
 #include "scene/toml_scene.hpp"
 
@@ -15,10 +16,10 @@ namespace {
 
 void read_scene_file(Loading& loading, const std::string& file) {
     const std::string extension = extension_of(file);
-    if (extension == ".obj") return read_model(loading, file);
+    if (is_mesh_file(file)) return read_model(loading, file);
     if (extension != ".toml")
-        return loading.error({file}, fmt::format("a scene file (.toml) or a model (.obj) is what is read, not \"{}\"",
-                                                 extension.empty() ? "no extension" : extension));
+        return loading.error({file}, fmt::format("a scene file (.toml) or a model ({}) is what is read, not \"{}\"",
+                                                 mesh_extensions, extension.empty() ? "no extension" : extension));
     std::string reason;
     const std::optional<std::string> text = loading.files.read(file, reason);
     if (!text) return loading.error({file}, fmt::format("cannot read the scene file: {}", reason));

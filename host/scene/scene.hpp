@@ -189,7 +189,7 @@ struct PixelWindow {
 /// May be empty (width or height 0) where the crop falls between pixel borders.
 PixelWindow crop_window(const RenderSettings& settings);
 
-/// Loads a scene file (.toml) or a bare model (.obj), whatever its extension says.
+/// Loads a scene file (.toml) or a bare model (.obj, .ply, .gltf, .glb), whatever its extension says.
 /// Throws SceneError with all faults found (bad input), never leaves a partial scene.
 Scene load_scene(const std::string& file);
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "scene/obj_loader.hpp"
+#include "scene/mesh_file.hpp"
 #include "scene/shapes.hpp"
 #include "scene/toml_reader.hpp"
 #include "scene/toml_scene.hpp"
@@ -224,11 +224,11 @@ void read_mesh(TableReader& reader, const Placement& placement) {
     const std::string file = reader.text("file");
     if (!reader.has("file")) return read_inline_mesh(reader, placement, smooth_angle);
     if (file.empty()) return;
-    if (extension_of(file) != ".obj")
-        return reader.error("file", fmt::format("is \"{}\", but OBJ is what is read: convert it to .obj", file));
+    if (!is_mesh_file(file))
+        return reader.error("file", fmt::format("is \"{}\", but a mesh is read from {}", file, mesh_extensions));
     const std::string name = placement.name.empty() ? placement.shape : placement.name;
-    load_obj(reader.loading(), path_beside(reader.file(), file),
-             {name, placement.material, placement.transform, smooth_angle}, reader.position_of("file"));
+    load_mesh_file(reader.loading(), path_beside(reader.file(), file),
+                   {name, placement.material, placement.transform, smooth_angle}, reader.position_of("file"));
 }
 
 }  // namespace

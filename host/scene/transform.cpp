@@ -12,6 +12,12 @@ Transform::Transform(const glm::dmat4& matrix)
       offset_(matrix[3]),
       inverse_transpose_(glm::transpose(glm::inverse(linear_))) {}
 
+Transform Transform::after(const glm::dmat4& first) const {
+    glm::dmat4 matrix(linear_);
+    matrix[3] = glm::dvec4(offset_, 1);
+    return Transform(matrix * first);
+}
+
 glm::dvec3 Transform::normal(const glm::dvec3& n) const {
     const glm::dvec3 transformed = inverse_transpose_ * n;
     const double length = glm::length(transformed);

@@ -12,6 +12,9 @@ class Transform {
     Transform() = default;
     explicit Transform(const glm::dmat4& matrix);
 
+    /// This transform after another one.
+    Transform after(const glm::dmat4& first) const;
+
     /// Without a transform p itself, so that one infinite coordinate does not spoil the others.
     glm::dvec3 point(const glm::dvec3& p) const { return identity_ ? p : linear_ * p + offset_; }
     /// Unit normal by the inverse transpose; zero for a zero or not finite normal. Outside stays outside.

@@ -70,11 +70,12 @@ TEST(the_scene_of_a_model, that_is_none_is_refused) {
     expect_failure(run_raymill({"scene", folder.file("scene.toml")}), 2, "scene.toml");
 }
 
-std::vector<fs::path> obj_files() {
+std::vector<fs::path> model_files(const char* folder) {
     std::vector<fs::path> files;
     std::error_code none;
-    for (const auto& entry : fs::recursive_directory_iterator(fs::path(RAYMILL_TEST_DATA) / "obj", none))
-        if (entry.path().extension() == ".obj") files.push_back(entry.path());
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(RAYMILL_TEST_DATA) / folder, none))
+        for (const char* extension : {".obj", ".ply", ".gltf", ".glb"})
+            if (entry.path().extension() == extension) files.push_back(entry.path());
     std::ranges::sort(files);
     return files;
 }
@@ -95,9 +96,13 @@ void expect_rendered_or_refused(const fs::path& model, int& rendered) {
     for (const float value : read_picture(file).rgba) ASSERT_TRUE(value >= 0 && value < 1e6f) << value;
 }
 
-TEST(real_models, are_rendered_or_refused_with_a_sentence) {
-    const std::vector<fs::path> files = obj_files();
-    if (files.empty()) GTEST_SKIP() << "there are no models in " << RAYMILL_TEST_DATA << "/obj";
+class real_models : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(of, real_models, testing::Values("obj", "ply", "gltf"),
+                         [](const auto& of) { return std::string(of.param); });
+
+TEST_P(real_models, are_rendered_or_refused_with_a_sentence) {
+    const std::vector<fs::path> files = model_files(GetParam());
+    if (files.empty()) GTEST_SKIP() << "there are no models in " << RAYMILL_TEST_DATA << "/" << GetParam();
     int rendered = 0;
     for (const fs::path& file : files) expect_rendered_or_refused(file, rendered);
     EXPECT_GT(rendered, static_cast<int>(files.size()) / 2);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "scene/texture.hpp"
 #include "scene_files.hpp"
@@ -55,6 +56,79 @@ TEST(RealModels, have_the_triangles_that_their_index_counts) {
                                                           {"obj/psor-cube/psor-cube.obj", 33796},
                                                           {"obj/legocar/legocar.obj", 10992}};
     for (const auto& [file, count] : models) EXPECT_EQ(load_scene((data / file).string()).triangles.size(), count);
+}
+
+TEST(RealModels, of_gltf_and_ply_have_the_triangles_that_their_index_counts) {
+    SKIP_WITHOUT_DATA();
+    const std::pair<const char*, std::size_t> models[] = {{"gltf/FlightHelmet/FlightHelmet.gltf", 94722},
+                                                          {"gltf/balloon/scene.gltf", 35698},
+                                                          {"gltf/gdx/nominal/gltf/basicMaterials.glb", 3520},
+                                                          {"gltf/bevy-basic/torus/torus.gltf", 3072},
+                                                          {"gltf/box/Box_glTF-Embedded/Box.gltf", 12},
+                                                          {"ply/teapot.ply", 3206},
+                                                          {"ply/tinyply/sofa.ply", 24104},
+                                                          {"ply/tinyply/sofa_ascii.ply", 24104},
+                                                          {"lux/psor-cube/Cubo_Prism_01_MAT.ply", 33792}};
+    for (const auto& [file, count] : models)
+        EXPECT_EQ(load_scene((data / file).string()).triangles.size(), count) << file;
+}
+
+TEST(RealModels, in_three_containers_or_encodings_are_the_same) {
+    SKIP_WITHOUT_DATA();
+    const std::vector<const char*> sets[] = {
+        {"gltf/box/Box_glTF/Box.gltf", "gltf/box/Box_glTF-Binary/Box.glb", "gltf/box/Box_glTF-Embedded/Box.gltf"},
+        {"ply/happly/platonic_shelf.ply", "ply/happly/platonic_shelf_ascii.ply",
+         "ply/happly/platonic_shelf_big_endian.ply"}};
+    for (const auto& set : sets) {
+        const Scene first = load_scene((data / set[0]).string());
+        ASSERT_GT(first.triangles.size(), 0u);
+        for (const char* file : set) {
+            const Scene scene = load_scene((data / file).string());
+            ASSERT_EQ(scene.triangles.size(), first.triangles.size()) << file;
+            for (std::size_t t = 0; t < first.triangles.size(); ++t)
+                for (int c = 0; c < 3; ++c)
+                    EXPECT_EQ(position(scene, scene.triangles[t], c), position(first, first.triangles[t], c)) << file;
+        }
+    }
+}
+
+/// What the glTF validator's report beside the file calls errors, as "CODE /pointer" lines.
+std::string reported_errors(const fs::path& file) {
+    const auto report = nlohmann::json::parse(bytes_of(file.string() + ".report.json"));
+    std::string errors = "\n";
+    for (const auto& message : report["issues"]["messages"])
+        if (message["severity"] == 0) errors += message["code"].get<std::string>() + '\n';
+    return errors;
+}
+
+TEST(RealModels, that_the_gltf_validator_calls_broken_are_refused_where_it_concerns_what_is_drawn) {
+    SKIP_WITHOUT_DATA();
+    // References to nothing, data outside its buffer, and containers that are none.
+    const std::vector<std::string> fatal = {"UNRESOLVED_REFERENCE", "GLB_UNEXPECTED",        "GLB_INVALID",
+                                            "GLB_LENGTH",           "GLB_EMPTY_CHUNK",       "NODE_PARENT_OVERRIDE",
+                                            "NODE_MATRIX",          "SCENE_NON_ROOT_NODE",   "BUFFER_BYTE_LENGTH",
+                                            "UNKNOWN_ASSET_MAJOR",  "CAMERA_XMAG_YMAG_ZERO", "ACCESSOR_SPARSE_COUNT"};
+    std::size_t refused = 0, loaded = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(data / "gltf/validator")) {
+        const fs::path& file = entry.path();
+        if (file.extension() != ".gltf" && file.extension() != ".glb") continue;
+        const std::string errors = reported_errors(file);
+        bool must_fail = false;
+        // Variants of materials are an extension that is left out.
+        if (file.string().find("KHR_materials_variants") == std::string::npos)
+            for (const std::string& code : fatal) must_fail |= errors.find('\n' + code) != std::string::npos;
+        try {
+            load_scene(file.string());
+            EXPECT_FALSE(must_fail) << file << ' ' << errors;
+            ++loaded;
+        } catch (const SceneError& error) {
+            EXPECT_THAT(error.what(), testing::HasSubstr(file.filename().string() + ":")) << file;
+            EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+            ++refused;
+        }
+    }
+    EXPECT_GT(refused, 50u);
+    EXPECT_GT(loaded, 100u);
 }
 
 TEST(RealModels, of_cornell_boxes_are_seen_from_their_open_side) {

@@ -123,7 +123,8 @@ const Rule rules[] = {
      "4:17: object 1: an index in faces must be a whole number from 0 to 2"},
     {"face_of_two", OBJECT "shape = \"mesh\"\nvertices = [[0,0,0],[1,0,0],[0,1,0]]\nfaces = [[0, 1]]\n",
      "4:10: object 1: a face in faces must be a list of three or more"},
-    {"ply", OBJECT "shape = \"mesh\"\nfile = \"a.ply\"\n", "3:8: object 1: file is \"a.ply\", but OBJ is what is read"},
+    {"stl", OBJECT "shape = \"mesh\"\nfile = \"a.stl\"\n",
+     "3:8: object 1: file is \"a.stl\", but a mesh is read from .obj, .ply, .gltf or .glb"},
     {"missing_mesh", OBJECT "shape = \"mesh\"\nfile = \"no.obj\"\n", "3:8: cannot read the mesh"},
     {"negative_profile", OBJECT "shape = \"lathe\"\nprofile = [[0, 0], [-1, 1]]\n",
      "3:11: object 1: profile has a negative radius in point 2"},
@@ -181,7 +182,7 @@ TEST(SceneFileErrors, say_why_a_file_cannot_be_read) {
     EXPECT_THAT(reason(files.path("none.toml")), HasSubstr("cannot read the scene file: No such file"));
     std::filesystem::create_directory(files.path("folder.toml"));
     EXPECT_THAT(reason(files.path("folder.toml")), HasSubstr("it is a folder"));
-    EXPECT_THAT(reason(files.path("model.glb")), HasSubstr("is what is read, not \".glb\""));
+    EXPECT_THAT(reason(files.path("model.stl")), HasSubstr("is what is read, not \".stl\""));
     EXPECT_THAT(reason(files.path("none.obj")), HasSubstr("cannot read the mesh"));
 }
 
