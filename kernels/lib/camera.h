@@ -5,8 +5,8 @@
 #include "lib/sampling.h"
 
 /// A place in the order of camera samples: tiles of TILE x TILE pixels row by row, in a tile all pixels of one sample
-/// after the other, so that 64 rays in a row are neighbours. Tiles at the right and bottom edge are smaller; none is
-/// padded.
+/// after the other, so that 64 rays in a row are neighbours. In a whole tile the pixels come in Z-order, so that sixteen
+/// rays are. Tiles at the right and bottom edge are smaller, and go row by row; none is padded.
 typedef struct {
     uint tile_x, tile_y;  // first pixel of the tile, in the rendered window
     uint columns, rows;   // of the tile
@@ -58,10 +58,16 @@ typedef struct {
     uint path[LANES];
 } CameraSamples;
 
+/// Bits 0, 2 and 4: the column of a place in Z-order.
+static inline uint every_other_bit(uint place) { return (place & 1u) | (place >> 1 & 2u) | (place >> 2 & 4u); }
+
 /// Takes the next samples. A lane may lie past the last sample: its ray is not to be used.
 static inline void camera_samples(CameraCursor* cursor, constant CameraRecord* camera, CameraSamples* s) {
     for (uint lane = 0; lane < LANES; ++lane) {
-        const uint x = cursor->tile_x + cursor->column, y = cursor->tile_y + cursor->row;
+        const bool whole = cursor->columns * cursor->rows == TILE * TILE;
+        const uint place = cursor->row * TILE + cursor->column;
+        const uint x = cursor->tile_x + (whole ? every_other_bit(place) : cursor->column);
+        const uint y = cursor->tile_y + (whole ? every_other_bit(place >> 1) : cursor->row);
         s->x[lane] = camera->crop[0] + x;
         s->y[lane] = camera->crop[1] + y;
         s->pixel[lane] = y * camera->crop[2] + x;

@@ -162,7 +162,7 @@ void plant(const std::filesystem::path& folder, const char* file, const std::str
 
 TEST(Replay, by_kernels_with_a_mistake_writes_something_else_and_is_out_of_bounds) {
     const verify::TemporaryFolder folder;
-    plant(folder.path() / "kernels", "lib/light.h", "return 1.0f / fma(", "return 1.00001f / fma(");
+    plant(folder.path() / "kernels", "lib/light.h", "attenuation = 1.0f / fma(", "attenuation = 1.00001f / fma(");
     if (HasFatalFailure()) return;
     TestFrame frame(branching_scene());
     const Capture capture = capture_of(frame, Stage::shade, 0, 0);

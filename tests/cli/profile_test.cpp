@@ -166,9 +166,9 @@ TEST_F(ProfileCommand, fails_where_an_image_depends_on_the_capacity) {
     const fs::path kernels = folder_.path() / "kernels";
     fs::copy(RAYMILL_KERNELS, kernels, fs::copy_options::recursive);
     std::string text = read_bytes((kernels / "generate.cl").string());
-    const std::string right = "(float3)(1.0f)";
+    const std::string right = "first_sample + begin";
     ASSERT_TRUE(contains(text, right));
-    text.replace(text.find(right), right.size(), "(float3)(count > 100 ? 1.0f : 0.5f)");
+    text.replace(text.find(right), right.size(), "first_sample + (count > 100 ? 0 : begin)");
     write_text((kernels / "generate.cl").string(), text);
     const Outcome outcome = profile({"--spp", "1", "--queue-capacity", "64,1k", "--kernel-dir", kernels.string()});
     EXPECT_EQ(outcome.status, 1);

@@ -59,15 +59,32 @@ struct Sample {
     uint sample;
 };
 
+/// The pixels of a whole tile: quarter by quarter (top left, top right, bottom left, bottom right), and these so again.
+void add_quarters(int left, int top, int edge, uint sample, std::vector<Sample>& order) {
+    if (edge == 1) {
+        order.push_back({left, top, sample});
+        return;
+    }
+    const int half = edge / 2;
+    for (const int y : {top, top + half})
+        for (const int x : {left, left + half}) add_quarters(x, y, half, sample, order);
+}
+
 /// The order that the kernel documents, spelt out: tiles row by row, samples in a tile, pixels of a sample.
 std::vector<Sample> tile_order(const PixelWindow& window, int spp) {
     std::vector<Sample> order;
     for (int top = 0; top < window.height; top += TILE)
         for (int left = 0; left < window.width; left += TILE)
-            for (int sample = 0; sample < spp; ++sample)
-                for (int y = top; y < std::min(top + TILE, window.height); ++y)
-                    for (int x = left; x < std::min(left + TILE, window.width); ++x)
-                        order.push_back({x, y, static_cast<uint>(sample)});
+            for (int sample = 0; sample < spp; ++sample) {
+                const int width = std::min<int>(TILE, window.width - left);
+                const int height = std::min<int>(TILE, window.height - top);
+                if (width == TILE && height == TILE) {
+                    add_quarters(left, top, TILE, static_cast<uint>(sample), order);
+                    continue;
+                }
+                for (int y = top; y < top + height; ++y)
+                    for (int x = left; x < left + width; ++x) order.push_back({x, y, static_cast<uint>(sample)});
+            }
     return order;
 }
 
