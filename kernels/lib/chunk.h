@@ -44,7 +44,8 @@ static inline void chunk_set_hit(RayChunk* c, uint i, Hit hit) {
 }
 
 /// Call for each i from 0 on, then chunk_prepare(). Nothing farther than t_max counts.
-static inline void chunk_add(RayChunk* c, uint i, global const float* origin, global const float* direction, float t_max) {
+static inline void chunk_add(RayChunk* c, uint i, global const float* origin, global const float* direction,
+                             float t_max) {
 #pragma unroll
     for (uint axis = 0; axis < 3; ++axis) {
         set_lane(c->origin[axis], i, origin[axis]);

@@ -42,10 +42,10 @@ static inline float16 max16(float16 a, float16 b) { return select(b, a, a > b); 
 /// Eight floats at a multiple of 32 bytes: one load, which vload8 is not.
 static inline float8 aligned8(global const float* p) { return *(global const float8*)p; }
 
-/// Asks for a cache line that will be read soon, where there is a way to.
-static inline void prefetch_line(global const void* address) {
+/// Asks for memory that will be read soon, where there is a way to: PoCL's prefetch() does nothing.
+static inline void fetch_early(global const void* address, uint bytes) {
 #ifdef __AVX__
-    __builtin_prefetch((const void*)(ulong)address);
+    for (uint line = 0; line < bytes; line += 64) __builtin_prefetch((const void*)((ulong)address + line));
 #endif
 }
 

@@ -34,15 +34,19 @@ static inline Geometry scene_geometry(global const BvhNode* nodes, global const 
     return g;
 }
 
+/// Eight planes of a node: side 0 lower or 1 upper, of an axis.
+static inline float8 planes_of(global const BvhNode* node, uint side, uint axis) {
+    return aligned8(node->bounds[side][axis]);
+}
+
 /// Children whose boxes the ray meets in [0, t_max], and where it enters them.
 static inline uint intersect_children(global const BvhNode* node, SlabFrame f, float t_max, float8* entry) {
-    global const float* planes = &node->bounds[0][0][0];
-    const float8 near_x = fma(aligned8(planes + (f.sign[0] * 3) * BVH_WIDTH), (float8)(f.inverse.x), (float8)(f.near.x));
-    const float8 near_y = fma(aligned8(planes + (f.sign[1] * 3 + 1) * BVH_WIDTH), (float8)(f.inverse.y), (float8)(f.near.y));
-    const float8 near_z = fma(aligned8(planes + (f.sign[2] * 3 + 2) * BVH_WIDTH), (float8)(f.inverse.z), (float8)(f.near.z));
-    const float8 far_x = fma(aligned8(planes + (3 - f.sign[0] * 3) * BVH_WIDTH), (float8)(f.inverse.x), (float8)(f.far.x));
-    const float8 far_y = fma(aligned8(planes + (4 - f.sign[1] * 3) * BVH_WIDTH), (float8)(f.inverse.y), (float8)(f.far.y));
-    const float8 far_z = fma(aligned8(planes + (5 - f.sign[2] * 3) * BVH_WIDTH), (float8)(f.inverse.z), (float8)(f.far.z));
+    const float8 near_x = fma(planes_of(node, f.sign[0], 0), (float8)(f.inverse.x), (float8)(f.near.x));
+    const float8 near_y = fma(planes_of(node, f.sign[1], 1), (float8)(f.inverse.y), (float8)(f.near.y));
+    const float8 near_z = fma(planes_of(node, f.sign[2], 2), (float8)(f.inverse.z), (float8)(f.near.z));
+    const float8 far_x = fma(planes_of(node, 1 - f.sign[0], 0), (float8)(f.inverse.x), (float8)(f.far.x));
+    const float8 far_y = fma(planes_of(node, 1 - f.sign[1], 1), (float8)(f.inverse.y), (float8)(f.far.y));
+    const float8 far_z = fma(planes_of(node, 1 - f.sign[2], 2), (float8)(f.inverse.z), (float8)(f.far.z));
     const float8 enter = max8(max8(near_x, near_y), max8(near_z, (float8)(0.0f)));
     const float8 leave = min8(min8(far_x, far_y), min8(far_z, (float8)(t_max)));
     *entry = enter;
@@ -143,20 +147,21 @@ static inline uint8 places_by_distance(uint8 keys, uint mask) {
 
 /// Asks for the memory of a child that will be visited soon.
 static inline void prefetch_child(const Geometry* geometry, uint child) {
-    if (child & CHILD_LEAF) {
-        global const TriangleBlock* block = geometry->triangles + (child & CHILD_FIRST_MASK);
-        for (uint row = 0; row < 10; row += 2) prefetch_line(&block->position[0][0][0] + row * BVH_WIDTH);
-    } else {
-        global const BvhNode* node = geometry->nodes + child;
-        for (uint row = 0; row < 8; row += 2) prefetch_line(&node->bounds[0][0][0] + row * BVH_WIDTH);
-    }
+    const uint first = child & CHILD_FIRST_MASK;
+    if (!(child & CHILD_LEAF))
+        fetch_early(geometry->nodes + child, sizeof(BvhNode));
+    else if (child & CHILD_SPHERES)
+        fetch_early(geometry->spheres + first, sizeof(SphereBlock));
+    else
+        fetch_early(geometry->triangles + first, sizeof(TriangleBlock));
 }
 
 /// Pushes the children in `mask` so that the nearest is on top. An entry is the distance's bits above the child word.
-static inline uint push_children(const Geometry* geometry, global const uint* children, uint mask, float8 entry, ulong* stack, uint top) {
+static inline uint push_children(const Geometry* geometry, global const uint* children, uint mask, float8 entry,
+                                 ulong* stack, uint top) {
     uint key[BVH_WIDTH], place[BVH_WIDTH];
-    *(uint8*)key = as_uint8(entry);
-    *(uint8*)place = places_by_distance(as_uint8(entry), mask);
+    vstore8(as_uint8(entry), 0, key);
+    vstore8(places_by_distance(as_uint8(entry), mask), 0, place);
     const uint count = popcount(mask);
     for (; mask != 0; mask &= mask - 1) {
         const uint lane = lowest_bit(mask);
@@ -177,7 +182,7 @@ static void traverse(const Geometry* geometry, Query* query, const SlabFrame* sl
     for (;;) {
         if (!(child & CHILD_LEAF)) {
             global const BvhNode* node = geometry->nodes + child;
-            prefetch_line(node->child);  // in a cache line of its own, and needed last
+            fetch_early(node->child, sizeof(node->child));  // in a cache line of its own, and needed last
             float8 entry;
             const uint mask = intersect_children(node, *slabs, query->best.t, &entry);
             if ((mask & (mask - 1)) != 0) {

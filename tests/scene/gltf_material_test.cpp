@@ -132,7 +132,8 @@ TEST(GltfMaterial, of_specular_and_glossiness_keeps_both) {
 
 /// A BMP of 2 x 2 pixels: blue, white over black, red.
 std::string bmp() {
-    std::string text = "BM" + GltfDocument::number(70) + GltfDocument::number(0) + GltfDocument::number(54);
+    std::string text = "BM";
+    text += GltfDocument::number(70) + GltfDocument::number(0) + GltfDocument::number(54);
     for (const std::uint32_t n : {40u, 2u, 2u, 1u | 24u << 16, 0u, 16u, 0u, 0u, 0u, 0u})
         text += GltfDocument::number(n);
     const unsigned char rows[] = {0, 0, 0, 0, 0, 255, 0, 0, 255, 0, 0, 255, 255, 255, 0, 0};  // from the bottom, BGR
