@@ -365,7 +365,8 @@ std::string model_scene_toml(const std::string& model_file) {
     loading.finish(model_file);
     std::string text = "[render]\nsize = [640, 480]\n";
     if (framing->exposure != 0) text += fmt::format("exposure = {}\n", toml_number(framing->exposure));
-    text += "\n" + camera_toml(framing->camera);
+    text += "\n";
+    text += camera_toml(framing->camera);
     for (const SceneLight& light : framing->lights) text += "[[light]]\n" + std::visit(LightText{}, light.light) + "\n";
     text += fmt::format("[[object]]\nshape = \"mesh\"\nfile = {}\n", toml_text(model_file));
     return text;
