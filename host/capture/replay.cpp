@@ -23,6 +23,10 @@ std::uint64_t hit_count(const std::vector<Hit>& hits) {
         std::ranges::count_if(hits, [](const Hit& hit) { return hit.primitive != NO_INDEX; }));
 }
 
+Film film_of(const Device& device, std::uint64_t pixels) {
+    return {{device, pixels * FILM_CHANNELS}, {device, 1}};
+}
+
 }  // namespace
 
 Replay::Replay(const Device& device, Stages& stages, const DeviceScene& scene, const Capture& capture,
@@ -35,11 +39,8 @@ Replay::Replay(const Device& device, Stages& stages, const DeviceScene& scene, c
       slots_(capture.slots),
       items_(capture.items()),
       children_(device, stage_ == Stage::secondary ? 2 * std::size_t{capture.count} : 0),
-      film_{{device, film_pixels * FILM_CHANNELS * capture.frame.planes.count()}, {
-    device, 1
-}
-}  // namespace raymill::capture
-{
+      film_(film_of(device, film_pixels * capture.frame.planes.count())) {
+    film_.pixels_once = pixels_once(capture.depth, capture.frame.spp, stage_ == Stage::shadow ? slots_.count : 1);
     std::uint64_t step = capacity > 0 ? std::min<std::uint64_t>(capacity, capture.count) : capture.count;
     if (stage_ == Stage::shadow) step = std::max<std::uint64_t>(step / CHUNK, 1) * CHUNK;
     const auto places = unpack_segments(capture.shadow_rays, capture.shadow_counts);

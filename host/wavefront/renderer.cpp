@@ -158,15 +158,15 @@ std::vector<float> Renderer::resolve() {
 
 void Renderer::trace(const Batch& batch) {
     const QueueRange<Ray> rays{queues_[static_cast<std::size_t>(batch.depth)], batch.first, batch.count};
-    const bool pixels_once = batch.depth == 0 && scene_.settings.spp == 1;
-    film_.pixels_once = pixels_once;
+    const int spp = scene_.settings.spp;
+    film_.pixels_once = pixels_once(batch.depth, spp);
     stages_.intersect(device_scene_, rays, hits_, film_);
     show("intersect", batch);
     for (const SlotRange& slots : slot_ranges_) {
-        film_.pixels_once = pixels_once;
+        film_.pixels_once = pixels_once(batch.depth, spp);
         stages_.shade(device_scene_, rays, hits_, slots, shadow_queue_, film_);
         show("shade", batch, slots);
-        film_.pixels_once = pixels_once && slots.count == 1;  // each light sample has a shadow ray of its own
+        film_.pixels_once = pixels_once(batch.depth, spp, slots.count);
         stages_.shadow(device_scene_, shadow_queue_, Stages::chunks(batch.count) * slots.count, film_);
         show("shadow", batch, slots);
         if (profiler_) profiler_->end_pass(film_.counters);

@@ -33,6 +33,12 @@ struct Film {
     bool pixels_once = false;
 };
 
+/// Film::pixels_once of launches on rays of this depth: camera rays of one sample a pixel have each its own. slots: light
+/// samples of the pass, for shadow, since a hit has a shadow ray for each.
+inline bool pixels_once(int depth, int spp, uint slots = 1) {
+    return depth == 0 && spp == 1 && slots == 1;
+}
+
 /// Light samples [first, first + count) of the scene's list.
 struct SlotRange {
     uint first = 0;
