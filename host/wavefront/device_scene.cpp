@@ -35,20 +35,12 @@ auto upload(const Device& device, const Array& values) {
     return Buffer<T>(device, std::span<const T>(values));
 }
 
-/// Of the hierarchy: a processor traverses it where it was built, in memory that it likes (bvh/large_array.hpp).
-template <class T>
-Buffer<T> share(const Device& device, const bvh::LargeArray<T>& values) {
-    if (device.info.type != "CPU" || values.empty()) return Buffer<T>(device, std::span<const T>(values));
-    // The kernels only read it.
-    return Buffer<T>::over(device, {const_cast<T*>(values.data()), values.size()});
-}
-
 }  // namespace
 
 DeviceScene::DeviceScene(const Device& device, const Scene& scene, const Bvh& bvh, const FilmPlanes& planes)
-    : nodes(share(device, bvh.nodes)),
-      triangle_blocks(share(device, bvh.triangle_blocks)),
-      sphere_blocks(share(device, bvh.sphere_blocks)),
+    : nodes(device, std::span<const BvhNode>(bvh.nodes)),
+      triangle_blocks(device, std::span<const TriangleBlock>(bvh.triangle_blocks)),
+      sphere_blocks(device, std::span<const SphereBlock>(bvh.sphere_blocks)),
       vertices(upload(device, scene.vertices)),
       triangles(upload(device, scene.triangles)),
       spheres(upload(device, scene.spheres)),

@@ -9,7 +9,6 @@
 namespace raymill {
 
 struct DeviceScene {
-    /// The hierarchy must outlive this: a device that is this processor reads it where it is.
     DeviceScene(const Device& device, const Scene& scene, const Bvh& bvh, const FilmPlanes& planes = {});
 
     Buffer<BvhNode> nodes;

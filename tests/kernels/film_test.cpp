@@ -31,7 +31,7 @@ TEST(Film, a_ray_that_misses_adds_its_weight_times_the_background_exactly) {
     Random random(1);
     std::vector<Ray> rays;
     for (uint i = 0; i < 1000; ++i) {
-        rays.push_back(make_ray(random.in_cube(-1, 1), random.direction(), i / 4));
+        rays.push_back(make_ray(random.in_cube(-1, 1), random.direction(), i));
         store(rays.back().throughput, std::exp2(random.in(-30, 10)) * random.in_cube(0, 1));
     }
     const IntersectResult result = KernelRig(nothing_but_background()).intersect(rays);
@@ -92,9 +92,8 @@ TEST(Film, sums_that_overflow_are_counted) {
 TEST(Film, plain_adds_make_the_sums_and_counts_of_atomic_ones) {
     Random random(3);
     std::vector<Ray> rays;
-    // Four rays a pixel: those of one chunk add one after the other, and no other chunk has their pixels.
-    for (uint i = 0; i < 16 * CHUNK; ++i) {
-        rays.push_back(weighing(std::exp2(random.in(-40, 26)) * (random.below(2) == 0 ? 1.0f : -1.0f), i / 4));
+    for (uint i = 0; i < 4 * CHUNK; ++i) {
+        rays.push_back(weighing(std::exp2(random.in(-40, 26)) * (random.below(2) == 0 ? 1.0f : -1.0f), i));
         if (random.below(50) == 0) rays.back().throughput[0] = std::numeric_limits<float>::quiet_NaN();
     }
     const KernelRig rig(nothing_but_background());

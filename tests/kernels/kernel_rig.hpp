@@ -76,7 +76,7 @@ class KernelRig {
     ~KernelRig();
 
     std::vector<Ray> generate(std::uint64_t first_sample, uint count) const;
-    /// Rays [first, end) of the queue. pixels_once: no two chunks of them share a pixel.
+    /// Rays [first, end) of the queue. pixels_once: no two of them share a pixel.
     IntersectResult intersect(std::span<const Ray> rays, uint first = 0, bool pixels_once = false) const;
     /// hits[i] belongs to rays[first + i].
     ShadeResult shade(std::span<const Ray> rays, std::span<const Hit> hits, uint first_slot, uint slot_count,
