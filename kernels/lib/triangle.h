@@ -126,7 +126,13 @@ static inline uint intersect_triangles(global const TriangleBlock* block, const 
     const float8 va = ax * cy - ay * cx;
     const float8 wa = bx * ay - by * ax;
     const float8 smallest = min8(min8(ua, va), wa), largest = max8(max8(ua, va), wa);
-    uint mask = lane_mask(((smallest >= 0.0f) & (largest > 0.0f)) | ((largest <= 0.0f) & (smallest < 0.0f)));
+    const float8 det = ua + va + wa;
+    const float8 inverse = 1.0f / det;
+    const float8 distance = fma(ua, az, fma(va, bz, wa * cz)) * f.shear_z * inverse;
+    // One way out, and only here: whether lines pass through triangles is a guess that the processor loses, and whether one
+    // is hit within reach a better one.
+    const int8 inside = ((smallest >= 0.0f) | (largest <= 0.0f)) & (det != 0.0f);
+    uint mask = lane_mask(inside & (distance > 0.0f) & (distance <= t_max));
     if (mask == 0) return 0;
 
     uint on_edge = mask & lane_mask((ua == 0.0f) | (va == 0.0f) | (wa == 0.0f));
@@ -144,10 +150,6 @@ static inline uint intersect_triangles(global const TriangleBlock* block, const 
                 mask &= ~(1u << lane);
     }
 
-    const float8 det = ua + va + wa;
-    const float8 inverse = 1.0f / det;
-    const float8 distance = fma(ua, az, fma(va, bz, wa * cz)) * f.shear_z * inverse;
-
     // A bound on the rounding error of the distance: a hit nearer than this may as well lie behind the origin.
     const float8 x = max8(max8(fabs(ax), fabs(bx)), fabs(cx));
     const float8 y = max8(max8(fabs(ay), fabs(by)), fabs(cy));
@@ -159,7 +161,7 @@ static inline uint intersect_triangles(global const TriangleBlock* block, const 
     *t = max8(enter_triangles(block, slabs), distance);
     *u = va * inverse;
     *v = wa * inverse;
-    return mask & lane_mask((det != 0.0f) & (distance > delta) & (*t <= t_max));
+    return mask & lane_mask((distance > delta) & (*t <= t_max));
 }
 
 #endif
