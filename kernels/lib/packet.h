@@ -6,6 +6,7 @@
 #define RAYMILL_PACKET_H
 
 #include "lib/beam.h"
+#include "lib/flight.h"
 
 #define ENTRY_GROUPS_SHIFT 3u  // in a stack entry, above the lane
 
@@ -208,6 +209,9 @@ static void traverse_packet(const Geometry* geometry, Packet* p, bool any_hit) {
     }
 }
 
+/// One bit a ray.
+static inline ulong all_rays(const RayChunk* c) { return c->count < CHUNK ? (1ul << c->count) - 1ul : ~0ul; }
+
 /// The rays of one octant, one bit each.
 static inline ulong rays_of_octant(const RayChunk* c, uint octant) {
     ulong members = 0;
@@ -230,7 +234,7 @@ static inline bool are_close(const RayChunk* c) {
     return true;
 }
 
-/// Traces rays of one octant: together if they are close, else one by one.
+/// Traces rays of one octant: together if they are close, else each on its own.
 static void traverse_octant(const Geometry* geometry, Packet* p, bool any_hit) {
     RayChunk* c = &p->rays;
     if (c->count >= FEWEST_TOGETHER && are_close(c)) {
@@ -238,8 +242,7 @@ static void traverse_octant(const Geometry* geometry, Packet* p, bool any_hit) {
         traverse_packet(geometry, p, any_hit);
         return;
     }
-    for (uint i = 0; i < c->count; ++i)
-        if (get_lane(c->best_t, i) >= 0.0f) chunk_set_hit(c, i, chunk_traverse_ray(c, geometry, i, any_hit));
+    fly_rays(geometry, c, all_rays(c), any_hit);
 }
 
 /// Finds the closest hit of every ray of a chunk, or with any_hit whether there is one.
@@ -249,20 +252,18 @@ static inline void traverse_chunk(const Geometry* geometry, Packet* p, bool any_
     if (any_hit)
         for (uint group = 0; group < GROUPS; ++group)
             c->best_t[group] = select(c->best_t[group], (float16)(-1.0f), c->best_primitive[group] != NO_INDEX);
-    ulong waiting = c->count < CHUNK ? (1ul << c->count) - 1ul : ~0ul;
+    ulong waiting = all_rays(c);
     if ((waiting & ~rays_of_octant(c, c->octant[0].s0)) == 0) {
         traverse_octant(geometry, p, any_hit);
         return;
     }
     Packet part;
+    ulong alone = 0;
     while (waiting != 0) {
         const ulong members = waiting & rays_of_octant(c, get_octant(c, lowest_bit64(waiting)));
         waiting &= ~members;
         if (popcount(members) < FEWEST_TOGETHER) {
-            for (ulong rest = members; rest != 0; rest &= rest - 1) {
-                const uint i = lowest_bit64(rest);
-                if (get_lane(c->best_t, i) >= 0.0f) chunk_set_hit(c, i, chunk_traverse_ray(c, geometry, i, any_hit));
-            }
+            alone |= members;
             continue;
         }
         uint count = 0;
@@ -273,6 +274,7 @@ static inline void traverse_chunk(const Geometry* geometry, Packet* p, bool any_
         for (ulong rest = members; rest != 0; rest &= rest - 1)
             chunk_set_hit(c, lowest_bit64(rest), chunk_hit(&part.rays, count++));
     }
+    fly_rays(geometry, c, alone, any_hit);
 }
 
 #endif
