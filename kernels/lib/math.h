@@ -45,6 +45,7 @@ static inline float8 aligned8(global const float* p) { return *(global const flo
 /// Asks for memory that will be read soon, where there is a way to: PoCL's prefetch() does nothing.
 static inline void fetch_early(global const void* address, uint bytes) {
 #ifdef __AVX__
+#pragma unroll
     for (uint line = 0; line < bytes; line += 64) __builtin_prefetch((const void*)((ulong)address + line));
 #endif
 }

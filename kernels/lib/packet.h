@@ -6,6 +6,7 @@
 #define RAYMILL_PACKET_H
 
 #include "lib/beam.h"
+#include "lib/flight.h"
 
 #define ENTRY_GROUPS_SHIFT 3u  // in a stack entry, above the lane
 
@@ -216,21 +217,6 @@ static inline bool visit_spheres_groups(Packet* p, global const SphereBlock* blo
     return found;
 }
 
-/// Traces some rays of a chunk, one bit each, one by one below a child. Whether one of them hit something.
-static inline bool trace_alone(RayChunk* c, const Geometry* geometry, ulong rays, uint child, bool any_hit) {
-    bool found = false;
-    for (; rays != 0; rays &= rays - 1) {
-        const uint i = lowest_bit64(rays);
-        if (get_lane(c->best_t, i) < 0.0f) continue;
-        Hit hit = chunk_traverse_ray(c, geometry, i, child, any_hit);
-        if (hit.primitive == ((const uint*)c->best_primitive)[i]) continue;
-        if (any_hit) hit.t = -1.0f;
-        chunk_set_hit(c, i, hit);
-        found = true;
-    }
-    return found;
-}
-
 /// Finds the closest hit of every ray of a coherent packet among the primitives of the hierarchy, or with any_hit whether
 /// there is one.
 static void traverse_packet(const Geometry* geometry, Packet* p, bool any_hit) {
@@ -244,7 +230,7 @@ static void traverse_packet(const Geometry* geometry, Packet* p, bool any_hit) {
         const uint distance = (uint)(item >> 32), child = (uint)item;
         if (as_float(distance & ~(7u | ALL_GROUPS << ENTRY_GROUPS_SHIFT)) > p->farthest_of_all) continue;
         if (popcount(stack_rays[top]) < FEWEST_AT_A_CHILD) {
-            if (trace_alone(&p->rays, geometry, stack_rays[top], child, any_hit)) update_farthest(p);
+            if (fly_rays(geometry, &p->rays, stack_rays[top], child, any_hit)) update_farthest(p);
             continue;
         }
         const uint groups = distance >> ENTRY_GROUPS_SHIFT & ALL_GROUPS;
@@ -273,9 +259,10 @@ static void traverse_packet(const Geometry* geometry, Packet* p, bool any_hit) {
     }
 }
 
-/// The rays of a chunk, one bit each, and those of one octant.
-static inline ulong rays_of(const RayChunk* c) { return c->count < CHUNK ? (1ul << c->count) - 1ul : ~0ul; }
+/// One bit a ray.
+static inline ulong all_rays(const RayChunk* c) { return c->count < CHUNK ? (1ul << c->count) - 1ul : ~0ul; }
 
+/// The rays of one octant, one bit each.
 static inline ulong rays_of_octant(const RayChunk* c, uint octant) {
     ulong members = 0;
 #pragma unroll
@@ -297,7 +284,7 @@ static inline bool are_close(const RayChunk* c) {
     return true;
 }
 
-/// Traces rays of one octant: together if they are close, else one by one.
+/// Traces rays of one octant: together if they are close, else each on its own.
 static void traverse_octant(const Geometry* geometry, Packet* p, bool any_hit) {
     RayChunk* c = &p->rays;
     if (c->count >= FEWEST_TOGETHER && are_close(c)) {
@@ -305,7 +292,7 @@ static void traverse_octant(const Geometry* geometry, Packet* p, bool any_hit) {
         traverse_packet(geometry, p, any_hit);
         return;
     }
-    trace_alone(c, geometry, rays_of(c), ROOT, any_hit);
+    fly_rays(geometry, c, all_rays(c), ROOT, any_hit);
 }
 
 /// Finds the closest hit of every ray of a chunk, or with any_hit whether there is one.
@@ -315,17 +302,18 @@ static inline void traverse_chunk(const Geometry* geometry, Packet* p, bool any_
     if (any_hit)
         for (uint group = 0; group < GROUPS; ++group)
             c->best_t[group] = select(c->best_t[group], (float16)(-1.0f), c->best_primitive[group] != NO_INDEX);
-    ulong waiting = rays_of(c);
+    ulong waiting = all_rays(c);
     if ((waiting & ~rays_of_octant(c, c->octant[0].s0)) == 0) {
         traverse_octant(geometry, p, any_hit);
         return;
     }
     Packet part;
+    ulong alone = 0;
     while (waiting != 0) {
         const ulong members = waiting & rays_of_octant(c, get_octant(c, lowest_bit64(waiting)));
         waiting &= ~members;
         if (popcount(members) < FEWEST_TOGETHER) {
-            trace_alone(c, geometry, members, ROOT, any_hit);
+            alone |= members;
             continue;
         }
         uint count = 0;
@@ -336,6 +324,7 @@ static inline void traverse_chunk(const Geometry* geometry, Packet* p, bool any_
         for (ulong rest = members; rest != 0; rest &= rest - 1)
             chunk_set_hit(c, lowest_bit64(rest), chunk_hit(&part.rays, count++));
     }
+    fly_rays(geometry, c, alone, ROOT, any_hit);
 }
 
 #endif

@@ -116,6 +116,18 @@ static inline void visit_spheres(global const SphereBlock* block, const SlabFram
     }
 }
 
+static inline void visit_leaf(const Geometry* geometry, uint child, const SlabFrame* slabs, const TriangleFrame* frame,
+                              Query* query) {
+    const uint first = child & CHILD_FIRST_MASK;
+    const uint last = first + (child >> CHILD_BLOCKS_SHIFT & CHILD_BLOCKS_MASK);
+    for (uint block = first; block <= last; ++block) {
+        if (child & CHILD_SPHERES)
+            visit_spheres(geometry->spheres + block, slabs, query);
+        else
+            visit_triangles(geometry->triangles + block, slabs, *frame, query);
+    }
+}
+
 static inline void visit_planes(const Geometry* geometry, Query* query) {
     for (uint i = 0; i < geometry->plane_count; ++i) {
         global const Plane* plane = geometry->planes + i;
@@ -194,14 +206,7 @@ static void traverse(const Geometry* geometry, Query* query, const SlabFrame* sl
                 continue;
             }
         } else {
-            const uint first = child & CHILD_FIRST_MASK;
-            const uint last = first + (child >> CHILD_BLOCKS_SHIFT & CHILD_BLOCKS_MASK);
-            for (uint block = first; block <= last; ++block) {
-                if (child & CHILD_SPHERES)
-                    visit_spheres(geometry->spheres + block, slabs, query);
-                else
-                    visit_triangles(geometry->triangles + block, slabs, frame, query);
-            }
+            visit_leaf(geometry, child, slabs, &frame, query);
             if (any_hit && query->best.primitive != none) return;
         }
         ulong item;
