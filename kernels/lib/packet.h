@@ -12,8 +12,8 @@
 
 // Directions that differ by more than this on an axis share too few nodes to be worth it.
 #define COHERENT_SPREAD 0.7f
-#define FEWEST_TOGETHER 12  // rays of a packet
-#define FEWEST_AT_A_CHILD 5  // rays that meet a child; fewer go on alone below it
+#define FEWEST_TOGETHER 20  // rays of a packet
+#define FEWEST_AT_A_CHILD 6  // rays that meet a child; fewer fly on alone below it
 
 
 /// A block of triangles as all rays of a packet see it: corners along the axes of its triangle frame, from the origin of a
