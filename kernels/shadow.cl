@@ -19,7 +19,8 @@ static void find_blockers(const Geometry* geometry, global const ShadowRay* rays
 #else
 static void find_blockers(const Geometry* geometry, global const ShadowRay* rays, uint count, uint* blockers) {
     for (uint i = 0; i < count; ++i)
-        blockers[i] = any_hit_before(geometry, load3(rays[i].origin), load3(rays[i].direction), rays[i].t_max).primitive;
+        blockers[i] =
+            any_hit_before(geometry, load3(rays[i].origin), load3(rays[i].direction), rays[i].t_max).primitive;
 }
 #endif
 
@@ -72,12 +73,11 @@ kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shado
             if (any(left != 0.0f)) left = transmittance(&geometry, &world, ray);
         }
         if (ray->route == ROUTE_CAMERA && film_keeps(&film, FILM_SHADOW)) {
-            film_add(&film, FILM_SHADOW, ray->pixel, left);
-            film_add_units(&film, film_pixel(&film, FILM_SHADOW, ray->pixel) + 3, FILM_ONE);
+            film_add(&film, FILM_SHADOW, ray->pixel, (float4)(left, 1.0f));
         }
         if (any(left != 0.0f)) {
-            film_add_two(&film, ray->route, ray->pixel, FILM_DIFFUSE, left * load3(ray->diffuse), FILM_SPECULAR,
-                         left * load3(ray->specular));
+            film_add_two(&film, ray->route, ray->pixel, FILM_DIFFUSE, (float4)(left * load3(ray->diffuse), 0.0f),
+                         FILM_SPECULAR, (float4)(left * load3(ray->specular), 0.0f));
         } else {
             ++blocked;
         }

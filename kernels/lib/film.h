@@ -1,9 +1,9 @@
-// The film: 64-bit sums in units of 2^-32, FILM_CHANNELS a pixel and plane. Integer addition has no order, so neither the
-// size of a queue nor the number of threads can change a bit of the picture.
+// The film: 64-bit sums in units of 2^-32, FILM_CHANNELS a pixel and plane. Integer addition has no order, so neither
+// the size of a queue nor the number of threads can change a bit of the picture.
 #ifndef RAYMILL_FILM_H
 #define RAYMILL_FILM_H
 
-#include "lib/math.h"
+#include "lib/gather.h"
 
 typedef struct {
     global long* sums;
@@ -17,7 +17,9 @@ static inline global long* film_pixel(const Film* film, uint plane, uint pixel) 
     return film->sums + ((ulong)film->constants->plane[plane] * film->constants->film_pixels + pixel) * FILM_CHANNELS;
 }
 
-static inline bool film_keeps(const Film* film, uint plane) { return film->constants->plane[plane] != 0; }
+static inline bool film_keeps(const Film* film, uint plane) {
+    return film->constants->plane[plane] != 0;
+}
 
 /// What is stored of a value that the film does not hold: nothing of NaN, FILM_LIMIT of what is beyond it. Both are
 /// counted.
@@ -30,19 +32,19 @@ static float film_cut(const Film* film, float value) {
     return copysign(FILM_LIMIT, value);
 }
 
-/// A value in units of the film, to the nearest, ties to even. NaN is left out and counted; what is beyond FILM_LIMIT
+/// Values in units of the film, to the nearest, ties to even. NaN is left out and counted; what is beyond FILM_LIMIT
 /// is cut and counted.
-static inline long film_units(const Film* film, float value) {
-    if (!(fabs(value) <= FILM_LIMIT)) value = film_cut(film, value);
+static inline long8 film_units8(const Film* film, float8 value) {
+    if (lane_mask(fabs(value) <= FILM_LIMIT) != 0xff) {
+        float* values = (float*)&value;
+        for (uint i = 0; i < 8; ++i)
+            if (!(fabs(values[i]) <= FILM_LIMIT)) values[i] = film_cut(film, values[i]);
+    }
     value *= 4294967296.0f;
     // Floats from 2^23 on are whole. To smaller ones 2^23 is added, which leaves no bits behind the point: rint(),
     // without the dozen instructions that it may take.
-    const float whole = fabs(value) < 8388608.0f ? copysign(8388608.0f, value) : 0.0f;
-    return (long)((value + whole) - whole);
-}
-
-static inline long3 film_units3(const Film* film, float3 value) {
-    return (long3)(film_units(film, value.x), film_units(film, value.y), film_units(film, value.z));
+    const float8 whole = select((float8)(0.0f), copysign((float8)(8388608.0f), value), fabs(value) < 8388608.0f);
+    return convert_long8((value + whole) - whole);
 }
 
 static inline void film_add_units(const Film* film, global long* sum, long units) {
@@ -58,16 +60,32 @@ static inline void film_add_units(const Film* film, global long* sum, long units
     if (((before ^ after) & (units ^ after)) < 0) atom_inc(&film->counters->saturated);
 }
 
-/// Adds to the first three channels of one plane.
-static inline void film_add_units3(const Film* film, uint plane, uint pixel, long3 units) {
-    global long* sum = film_pixel(film, plane, pixel);
-    film_add_units(film, sum + 0, units.x);
-    film_add_units(film, sum + 1, units.y);
-    film_add_units(film, sum + 2, units.z);
+/// Counts the lanes whose sign says that a sum overflowed.
+static void film_count_overflows(const Film* film, long4 overflow) {
+    const long4 count = overflow >> 63;
+    atom_sub(&film->counters->saturated, (ulong)(count.x + count.y + count.z + count.w));
 }
 
-static inline void film_add(const Film* film, uint plane, uint pixel, float3 value) {
-    film_add_units3(film, plane, pixel, film_units3(film, value));
+/// Adds to all four channels of a pixel.
+static inline void film_add_units4(const Film* film, global long* sum, long4 units) {
+    if (film->pixels_once) {
+        const long4 before = *(global const long4*)sum;
+        const ulong4 wrapped = as_ulong4(before) + as_ulong4(units);
+        const long4 after = as_long4(wrapped);
+        *(global long4*)sum = after;
+        const long4 overflow = (before ^ after) & (units ^ after);
+        const long2 either = overflow.lo | overflow.hi;
+        if ((either.x | either.y) < 0) film_count_overflows(film, overflow);
+    } else {
+        film_add_units(film, sum + 0, units.x);
+        film_add_units(film, sum + 1, units.y);
+        film_add_units(film, sum + 2, units.z);
+        film_add_units(film, sum + 3, units.w);
+    }
+}
+
+static inline void film_add(const Film* film, uint plane, uint pixel, float4 value) {
+    film_add_units4(film, film_pixel(film, plane, pixel), film_units8(film, (float8)(value, (float4)(0.0f))).lo);
 }
 
 /// The plane that light of this kind belongs to: `term` for camera hits, else that of the branch which the path took
@@ -78,20 +96,30 @@ static inline uint film_plane(uint term, uint route) {
 
 /// Adds radiance to the beauty, and to the plane it belongs to if that is kept.
 static inline void film_add_radiance(const Film* film, uint term, uint route, uint pixel, float3 radiance) {
-    const long3 units = film_units3(film, radiance);
-    film_add_units3(film, FILM_BEAUTY, pixel, units);
+    const long4 units = film_units8(film, (float8)(radiance, 0.0f, (float4)(0.0f))).lo;
+    film_add_units4(film, film_pixel(film, FILM_BEAUTY, pixel), units);
     const uint plane = film_plane(term, route);
-    if (film_keeps(film, plane)) film_add_units3(film, plane, pixel, units);
+    if (film_keeps(film, plane)) film_add_units4(film, film_pixel(film, plane, pixel), units);
 }
 
-/// Adds the radiance of two terms. The beauty gets the sum of their integers, so that the planes still add up to it.
-static inline void film_add_two(const Film* film, uint route, uint pixel, uint first_term, float3 first,
-                                uint second_term, float3 second) {
-    const long3 a = film_units3(film, first), b = film_units3(film, second);
-    film_add_units3(film, FILM_BEAUTY, pixel, a + b);
+/// Adds the radiance of two terms, three channels each. The beauty gets the sum of their integers, so that the planes
+/// still add up to it.
+static inline void film_add_two(const Film* film, uint route, uint pixel, uint first_term, float4 first,
+                                uint second_term, float4 second) {
+    const long8 units = film_units8(film, (float8)(first, second));
+    const long4 a = units.lo, b = units.hi;
+    film_add_units4(film, film_pixel(film, FILM_BEAUTY, pixel), a + b);
     const uint plane_a = film_plane(first_term, route), plane_b = film_plane(second_term, route);
-    if (film_keeps(film, plane_a)) film_add_units3(film, plane_a, pixel, a);
-    if (film_keeps(film, plane_b)) film_add_units3(film, plane_b, pixel, b);
+    if (film_keeps(film, plane_a)) film_add_units4(film, film_pixel(film, plane_a, pixel), a);
+    if (film_keeps(film, plane_b)) film_add_units4(film, film_pixel(film, plane_b, pixel), b);
+}
+
+/// film_add_two() for up to sixteen items: rows of three channels each, and one that must be 0.
+static inline void film_add_rows(const Film* film, uint count, const uint* route, const uint* pixel, uint first_term,
+                                 const Rows* first, uint second_term, const Rows* second) {
+    for (uint lane = 0; lane < count; ++lane)
+        film_add_two(film, route[lane], pixel[lane], first_term, row_of(first, lane), second_term,
+                     row_of(second, lane));
 }
 
 #endif
