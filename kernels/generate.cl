@@ -7,13 +7,13 @@
 #include "lib/gather.h"
 
 static inline void write_rays(const CameraSamples* s, Lanes3 from, Lanes3 along, uint count, global Ray* rays) {
-    const Rows origin = rows_of(from, as_float16(vload16(0, s->pixel)));
-    const Rows direction = rows_of(along, as_float16(vload16(0, s->sample)));
+    const Rows origin = rows_of(from, as_float16(s->pixel));
+    const Rows direction = rows_of(along, as_float16(s->sample));
     for (uint lane = 0; lane < count; ++lane) {
         global Ray* ray = rays + lane;
         store_row(ray->origin, row_of(&origin, lane));
         store_row(ray->direction, row_of(&direction, lane));
-        store_row(ray->throughput, (float4)(1.0f, 1.0f, 1.0f, as_float(s->path[lane])));
+        store_row(ray->throughput, (float4)(1.0f, 1.0f, 1.0f, as_float(((const uint*)&s->path)[lane])));
         ray->route = ROUTE_CAMERA;
     }
 }

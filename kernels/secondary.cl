@@ -20,12 +20,9 @@ static inline void spawn(const World* world, const HitLanes* hits, const Surface
     const int16 counts = lanes_max(throughput) >= world->constants->min_weight;
     c->mask = lane_mask16(counts & lanes_any(throughput)) & ((1u << hits->count) - 1u);
     if (c->mask == 0) return;
-    uint16 path;
-    for (uint lane = 0; lane < LANES; ++lane)
-        ((uint*)&path)[lane] = path_child(((const uint*)&hits->path)[lane], branch);
     c->origin = rows_of(leave_surfaces(world, s, side), as_float16(hits->pixel));
     c->direction = rows_of(direction, as_float16(hits->sample));
-    c->throughput = rows_of(throughput, as_float16(path));
+    c->throughput = rows_of(throughput, as_float16(path_child(hits->path, branch)));
     const uint16 first_branch = (uint16)(branch == 0 ? ROUTE_REFLECTED : ROUTE_REFRACTED);
     c->route = select(hits->route, first_branch, hits->route == ROUTE_CAMERA);
 }

@@ -10,10 +10,13 @@
 
 /// Ambient light and emission.
 static inline void add_local_light(const Film* film, const World* world, const Shading* s) {
-    const Rows ambient = rows_of(ambient_radiance(world, s), (float16)(0.0f));
-    const Rows emission = rows_of(emitted_radiance(world, s), (float16)(0.0f));
-    film_add_rows(film, s->hits.count, (const uint*)&s->hits.route, (const uint*)&s->hits.pixel, FILM_AMBIENT, &ambient,
-                  FILM_EMISSION, &emission);
+    Terms terms;
+    terms.count = s->hits.count;
+    vstore16(s->hits.pixel, 0, terms.pixel);
+    vstore16(s->hits.route, 0, terms.route);
+    terms.first = rows_of(ambient_radiance(world, s), (float16)(0.0f));
+    terms.second = rows_of(emitted_radiance(world, s), (float16)(0.0f));
+    film_add_terms(film, FILM_AMBIENT, FILM_EMISSION, &terms);
 }
 
 /// One work-item a chunk of CHUNK hits; segment = chunk * slot_count + slot.

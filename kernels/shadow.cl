@@ -64,6 +64,7 @@ kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shado
     const bool all_clear = constants->shadows == SHADOWS_NONE;
     if (!all_clear) find_blockers(&geometry, rays, count, blockers);
     uint blocked = 0;
+    Terms terms = {.count = 0};
     for (uint i = 0; i < count; ++i) {
         global const ShadowRay* ray = rays + i;
         float3 left = (float3)(1.0f);
@@ -76,12 +77,13 @@ kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shado
             film_add(&film, FILM_SHADOW, ray->pixel, (float4)(left, 1.0f));
         }
         if (any(left != 0.0f)) {
-            film_add_two(&film, ray->route, ray->pixel, FILM_DIFFUSE, (float4)(left * load3(ray->diffuse), 0.0f),
-                         FILM_SPECULAR, (float4)(left * load3(ray->specular), 0.0f));
+            terms_put(&terms, ray->pixel, ray->route, left * load3(ray->diffuse), left * load3(ray->specular));
+            if (terms.count == LANES) film_add_terms(&film, FILM_DIFFUSE, FILM_SPECULAR, &terms);
         } else {
             ++blocked;
         }
     }
+    film_add_terms(&film, FILM_DIFFUSE, FILM_SPECULAR, &terms);
     atom_add(&counters->shadow_traced, (ulong)count);
     if (blocked != 0) atom_add(&counters->shadow_blocked, (ulong)blocked);
 }

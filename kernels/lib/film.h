@@ -32,19 +32,23 @@ static float film_cut(const Film* film, float value) {
     return copysign(FILM_LIMIT, value);
 }
 
-/// Values in units of the film, to the nearest, ties to even. NaN is left out and counted; what is beyond FILM_LIMIT
-/// is cut and counted.
-static inline long8 film_units8(const Film* film, float8 value) {
-    if (lane_mask(fabs(value) <= FILM_LIMIT) != 0xff) {
+/// Values of four pixels in units of the film, to the nearest, ties to even. NaN is left out and counted; what is beyond
+/// FILM_LIMIT is cut and counted.
+static inline long16 film_units(const Film* film, float16 value) {
+    if (any16(~(fabs(value) <= FILM_LIMIT))) {
         float* values = (float*)&value;
-        for (uint i = 0; i < 8; ++i)
+        for (uint i = 0; i < 16; ++i)
             if (!(fabs(values[i]) <= FILM_LIMIT)) values[i] = film_cut(film, values[i]);
     }
     value *= 4294967296.0f;
     // Floats from 2^23 on are whole. To smaller ones 2^23 is added, which leaves no bits behind the point: rint(),
     // without the dozen instructions that it may take.
-    const float8 whole = select((float8)(0.0f), copysign((float8)(8388608.0f), value), fabs(value) < 8388608.0f);
-    return convert_long8((value + whole) - whole);
+    const float16 whole = select((float16)(0.0f), copysign((float16)(8388608.0f), value), fabs(value) < 8388608.0f);
+    return convert_long16((value + whole) - whole);
+}
+
+static inline long4 film_units4(const Film* film, float4 value) {
+    return film_units(film, (float16)(value, (float4)(0.0f), (float8)(0.0f))).lo.lo;
 }
 
 static inline void film_add_units(const Film* film, global long* sum, long units) {
@@ -60,22 +64,14 @@ static inline void film_add_units(const Film* film, global long* sum, long units
     if (((before ^ after) & (units ^ after)) < 0) atom_inc(&film->counters->saturated);
 }
 
-/// Counts the lanes whose sign says that a sum overflowed.
-static void film_count_overflows(const Film* film, long4 overflow) {
-    const long4 count = overflow >> 63;
-    atom_sub(&film->counters->saturated, (ulong)(count.x + count.y + count.z + count.w));
-}
-
 /// Adds to all four channels of a pixel.
 static inline void film_add_units4(const Film* film, global long* sum, long4 units) {
     if (film->pixels_once) {
-        const long4 before = *(global const long4*)sum;
-        const ulong4 wrapped = as_ulong4(before) + as_ulong4(units);
-        const long4 after = as_long4(wrapped);
-        *(global long4*)sum = after;
-        const long4 overflow = (before ^ after) & (units ^ after);
-        const long2 either = overflow.lo | overflow.hi;
-        if ((either.x | either.y) < 0) film_count_overflows(film, overflow);
+        const ulong4 before = *(global const ulong4*)sum, after = before + as_ulong4(units);
+        *(global ulong4*)sum = after;
+        const long4 overflow = as_long4((before ^ after) & (as_ulong4(units) ^ after)) < 0;
+        if (lane_mask(as_int8(overflow)) != 0)
+            atom_sub(&film->counters->saturated, (ulong)(overflow.x + overflow.y + overflow.z + overflow.w));
     } else {
         film_add_units(film, sum + 0, units.x);
         film_add_units(film, sum + 1, units.y);
@@ -85,7 +81,7 @@ static inline void film_add_units4(const Film* film, global long* sum, long4 uni
 }
 
 static inline void film_add(const Film* film, uint plane, uint pixel, float4 value) {
-    film_add_units4(film, film_pixel(film, plane, pixel), film_units8(film, (float8)(value, (float4)(0.0f))).lo);
+    film_add_units4(film, film_pixel(film, plane, pixel), film_units4(film, value));
 }
 
 /// The plane that light of this kind belongs to: `term` for camera hits, else that of the branch which the path took
@@ -96,30 +92,52 @@ static inline uint film_plane(uint term, uint route) {
 
 /// Adds radiance to the beauty, and to the plane it belongs to if that is kept.
 static inline void film_add_radiance(const Film* film, uint term, uint route, uint pixel, float3 radiance) {
-    const long4 units = film_units8(film, (float8)(radiance, 0.0f, (float4)(0.0f))).lo;
+    const long4 units = film_units4(film, (float4)(radiance, 0.0f));
     film_add_units4(film, film_pixel(film, FILM_BEAUTY, pixel), units);
     const uint plane = film_plane(term, route);
     if (film_keeps(film, plane)) film_add_units4(film, film_pixel(film, plane, pixel), units);
 }
 
-/// Adds the radiance of two terms, three channels each. The beauty gets the sum of their integers, so that the planes
-/// still add up to it.
-static inline void film_add_two(const Film* film, uint route, uint pixel, uint first_term, float4 first,
-                                uint second_term, float4 second) {
-    const long8 units = film_units8(film, (float8)(first, second));
-    const long4 a = units.lo, b = units.hi;
-    film_add_units4(film, film_pixel(film, FILM_BEAUTY, pixel), a + b);
-    const uint plane_a = film_plane(first_term, route), plane_b = film_plane(second_term, route);
-    if (film_keeps(film, plane_a)) film_add_units4(film, film_pixel(film, plane_a, pixel), a);
-    if (film_keeps(film, plane_b)) film_add_units4(film, film_pixel(film, plane_b, pixel), b);
+/// Radiance of two terms for each of up to LANES items: rows of three channels, and a fourth that is 0.
+typedef struct {
+    uint count;
+    uint pixel[LANES], route[LANES];
+    Rows first, second;
+} Terms;
+
+static inline void terms_put(Terms* terms, uint pixel, uint route, float3 first, float3 second) {
+    const uint i = terms->count++;
+    terms->pixel[i] = pixel;
+    terms->route[i] = route;
+    ((float4*)&terms->first)[i] = (float4)(first, 0.0f);
+    ((float4*)&terms->second)[i] = (float4)(second, 0.0f);
 }
 
-/// film_add_two() for up to sixteen items: rows of three channels each, and one that must be 0.
-static inline void film_add_rows(const Film* film, uint count, const uint* route, const uint* pixel, uint first_term,
-                                 const Rows* first, uint second_term, const Rows* second) {
-    for (uint lane = 0; lane < count; ++lane)
-        film_add_two(film, route[lane], pixel[lane], first_term, row_of(first, lane), second_term,
-                     row_of(second, lane));
+/// Adds the radiance of two terms. The beauty gets the sum of their integers, so that the planes still add up to it.
+/// Leaves none.
+static inline void film_add_terms(const Film* film, uint first_term, uint second_term, Terms* terms) {
+    union {
+        long16 part[4];
+        long4 row[LANES];
+    } first, both;
+    const bool by_term = film_keeps(film, first_term) || film_keeps(film, second_term) ||
+                         film_keeps(film, FILM_REFLECTION) || film_keeps(film, FILM_REFRACTION);
+    for (uint i = terms->count; i < LANES; ++i)
+        ((float4*)&terms->first)[i] = ((float4*)&terms->second)[i] = (float4)(0.0f);
+    for (uint i = 0; i < 4; ++i) {
+        first.part[i] = film_units(film, terms->first.part[i]);
+        both.part[i] = first.part[i] + film_units(film, terms->second.part[i]);
+    }
+    for (uint i = 0; i < terms->count; ++i) {
+        const uint pixel = terms->pixel[i];
+        film_add_units4(film, film_pixel(film, FILM_BEAUTY, pixel), both.row[i]);
+        if (!by_term) continue;
+        const uint plane_a = film_plane(first_term, terms->route[i]), plane_b = film_plane(second_term, terms->route[i]);
+        if (film_keeps(film, plane_a)) film_add_units4(film, film_pixel(film, plane_a, pixel), first.row[i]);
+        if (film_keeps(film, plane_b))
+            film_add_units4(film, film_pixel(film, plane_b, pixel), both.row[i] - first.row[i]);
+    }
+    terms->count = 0;
 }
 
 #endif

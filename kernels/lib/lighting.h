@@ -116,8 +116,7 @@ static inline void aim(const SurfaceLanes* s, constant SceneConstants* constants
 static inline uint push_shadow_rays(const Shading* s, Lanes3 start, constant SceneConstants* constants,
                                     global const LightRecord* light, LightSlot slot, global ShadowRay* out) {
     Lanes3 light_position;
-    LightSample sample = sample_light(light, slot, s->surface.position, (const uint*)&s->hits.sample,
-                                      (const uint*)&s->hits.path, &light_position);
+    LightSample sample = sample_light(light, slot, s->surface.position, s->hits.sample, s->hits.path, &light_position);
     const Answer a = answer(s, light, sample, light_position);
     const int16 adds =
         above_surface(&s->surface, constants, sample.direction) & (lanes_any(a.diffuse) | lanes_any(a.specular));

@@ -44,8 +44,8 @@ kernel void stratified_probe(global const uint* index, global const uint* key, u
                              global uint* out) {
     const uint i = get_global_id(0);
     if (i >= items || selector != 0) return;
-    uint x, y;
-    stratified_point(index[i], key[i], &x, &y);
-    out[2 * i] = x;
-    out[2 * i + 1] = y;
+    uint16 x, y;
+    stratified_point((uint16)(index[i]), (uint16)(key[i]), &x, &y);
+    out[2 * i] = x.s0;
+    out[2 * i + 1] = y.s0;
 }
