@@ -83,6 +83,15 @@ static inline Lanes4 gather4(global const void* words, uint stride, uint16 index
     return columns_of(rows);
 }
 
+/// Four words of sixteen records in a row; `words` are those of the first.
+static inline Lanes4 load4(global const void* words, uint stride) {
+    Rows rows;
+#pragma unroll
+    for (uint lane = 0; lane < LANES; ++lane)
+        ((float4*)&rows)[lane] = *(global const Row*)((global const float*)words + lane * stride);
+    return columns_of(rows);
+}
+
 /// One word of the records.
 static inline float16 gather1(global const void* word, uint stride, uint16 index) {
     const uint* record = (const uint*)&index;

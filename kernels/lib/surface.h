@@ -77,12 +77,24 @@ static inline Lanes3 gather3(global const float* words, uint stride, uint16 inde
 
 /// The hits that `place` names, among rays and hits of the same places.
 static inline HitLanes gather_hits(global const Ray* rays, global const Hit* hits, const uint* place, uint count) {
-    uint16 index;
-    for (uint lane = 0; lane < LANES; ++lane) ((uint*)&index)[lane] = place[lane < count ? lane : 0];
-    const Lanes4 origin = gather4(rays->origin, WORDS(Ray), index);
-    const Lanes4 direction = gather4(rays->direction, WORDS(Ray), index);
-    const Lanes4 throughput = gather4(rays->throughput, WORDS(Ray), index);
-    const Lanes4 hit = gather4(&hits->t, WORDS(Hit), index);
+    Lanes4 origin, direction, throughput, hit;
+    float16 route;
+    if (count == LANES && place[LANES - 1] == place[0] + LANES - 1) {
+        global const Ray* ray = rays + place[0];
+        origin = load4(ray->origin, WORDS(Ray));
+        direction = load4(ray->direction, WORDS(Ray));
+        throughput = load4(ray->throughput, WORDS(Ray));
+        hit = load4(hits + place[0], WORDS(Hit));
+        route = load4(ray->throughput + 1, WORDS(Ray)).w;
+    } else {
+        uint16 index;
+        for (uint lane = 0; lane < LANES; ++lane) ((uint*)&index)[lane] = place[lane < count ? lane : 0];
+        origin = gather4(rays->origin, WORDS(Ray), index);
+        direction = gather4(rays->direction, WORDS(Ray), index);
+        throughput = gather4(rays->throughput, WORDS(Ray), index);
+        hit = gather4(hits, WORDS(Hit), index);
+        route = gather1(&rays->route, WORDS(Ray), index);
+    }
     const HitLanes h = {count,
                         lanes_xyz(origin),
                         lanes_xyz(direction),
@@ -90,7 +102,7 @@ static inline HitLanes gather_hits(global const Ray* rays, global const Hit* hit
                         as_uint16(origin.w),
                         as_uint16(direction.w),
                         as_uint16(throughput.w),
-                        as_uint16(gather1(&rays->route, WORDS(Ray), index)),
+                        as_uint16(route),
                         hit.x,
                         hit.y,
                         hit.z,
