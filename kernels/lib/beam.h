@@ -53,7 +53,6 @@ static inline float16 twice(float8 v) {
     return pair;
 }
 
-/// One bit a lane, as lane_mask() does for eight.
 static inline void set_group(float16* pairs, uint group, float value) {
     ((float8*)pairs)[group] = (float8)(value);
 }

@@ -50,6 +50,7 @@ static inline uint lane_mask(int8 comparison) {
 #endif
 }
 
+/// One bit a lane, as lane_mask() does for eight.
 static inline uint lane_mask16(int16 comparison) {
 #ifdef __AVX512DQ__
     return (uint)__builtin_ia32_cvtd2mask512(comparison);
