@@ -32,8 +32,8 @@ static float film_cut(const Film* film, float value) {
     return copysign(FILM_LIMIT, value);
 }
 
-/// Values of four pixels in units of the film, to the nearest, ties to even. NaN is left out and counted; what is beyond
-/// FILM_LIMIT is cut and counted.
+/// Values of four pixels in units of the film, to the nearest, ties to even. NaN is left out and counted; what is
+/// beyond FILM_LIMIT is cut and counted.
 static inline long16 film_units(const Film* film, float16 value) {
     if (any16(~(fabs(value) <= FILM_LIMIT))) {
         float* values = (float*)&value;
@@ -48,7 +48,10 @@ static inline long16 film_units(const Film* film, float16 value) {
 }
 
 static inline long4 film_units4(const Film* film, float4 value) {
-    return film_units(film, (float16)(value, (float4)(0.0f), (float8)(0.0f))).lo.lo;
+    float16 row = (float16)(0.0f);
+    *(float4*)&row = value;
+    const long16 units = film_units(film, row);
+    return *(const long4*)&units;
 }
 
 static inline void film_add_units(const Film* film, global long* sum, long units) {
@@ -70,7 +73,7 @@ static inline void film_add_units4(const Film* film, global long* sum, long4 uni
         const ulong4 before = *(global const ulong4*)sum, after = before + as_ulong4(units);
         *(global ulong4*)sum = after;
         const long4 overflow = as_long4((before ^ after) & (as_ulong4(units) ^ after)) < 0;
-        if (lane_mask(as_int8(overflow)) != 0)
+        if ((overflow.x | overflow.y | overflow.z | overflow.w) != 0)
             atom_sub(&film->counters->saturated, (ulong)(overflow.x + overflow.y + overflow.z + overflow.w));
     } else {
         film_add_units(film, sum + 0, units.x);
@@ -132,7 +135,8 @@ static inline void film_add_terms(const Film* film, uint first_term, uint second
         const uint pixel = terms->pixel[i];
         film_add_units4(film, film_pixel(film, FILM_BEAUTY, pixel), both.row[i]);
         if (!by_term) continue;
-        const uint plane_a = film_plane(first_term, terms->route[i]), plane_b = film_plane(second_term, terms->route[i]);
+        const uint plane_a = film_plane(first_term, terms->route[i]),
+                   plane_b = film_plane(second_term, terms->route[i]);
         if (film_keeps(film, plane_a)) film_add_units4(film, film_pixel(film, plane_a, pixel), first.row[i]);
         if (film_keeps(film, plane_b))
             film_add_units4(film, film_pixel(film, plane_b, pixel), both.row[i] - first.row[i]);

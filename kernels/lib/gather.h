@@ -26,35 +26,35 @@ static inline Lanes3 lanes_xyz(Lanes4 v) {
     return r;
 }
 
+/// Lanes 0, 2, 4 ... and 1, 3, 5 ... of two vectors end to end, and two vectors' lanes by turns: the first eight lanes
+/// of each, and the last eight. One instruction each.
+static inline float16 even_lanes(float16 a, float16 b) {
+    return (float16)(a.s0, a.s2, a.s4, a.s6, a.s8, a.sa, a.sc, a.se, b.s0, b.s2, b.s4, b.s6, b.s8, b.sa, b.sc, b.se);
+}
+static inline float16 odd_lanes(float16 a, float16 b) {
+    return (float16)(a.s1, a.s3, a.s5, a.s7, a.s9, a.sb, a.sd, a.sf, b.s1, b.s3, b.s5, b.s7, b.s9, b.sb, b.sd, b.sf);
+}
+static inline float16 first_by_turns(float16 a, float16 b) {
+    return (float16)(a.s0, b.s0, a.s1, b.s1, a.s2, b.s2, a.s3, b.s3, a.s4, b.s4, a.s5, b.s5, a.s6, b.s6, a.s7, b.s7);
+}
+static inline float16 last_by_turns(float16 a, float16 b) {
+    return (float16)(a.s8, b.s8, a.s9, b.s9, a.sa, b.sa, a.sb, b.sb, a.sc, b.sc, a.sd, b.sd, a.se, b.se, a.sf, b.sf);
+}
+
 static inline Lanes4 columns_of(Rows rows) {
-    const float16 xz_lo = (float16)(rows.part[0].even, rows.part[1].even);
-    const float16 xz_hi = (float16)(rows.part[2].even, rows.part[3].even);
-    const float16 yw_lo = (float16)(rows.part[0].odd, rows.part[1].odd);
-    const float16 yw_hi = (float16)(rows.part[2].odd, rows.part[3].odd);
-    const Lanes4 columns = {(float16)(xz_lo.even, xz_hi.even), (float16)(yw_lo.even, yw_hi.even),
-                            (float16)(xz_lo.odd, xz_hi.odd), (float16)(yw_lo.odd, yw_hi.odd)};
+    const float16* part = rows.part;
+    const float16 xz_first = even_lanes(part[0], part[1]), xz_last = even_lanes(part[2], part[3]);
+    const float16 yw_first = odd_lanes(part[0], part[1]), yw_last = odd_lanes(part[2], part[3]);
+    const Lanes4 columns = {even_lanes(xz_first, xz_last), even_lanes(yw_first, yw_last), odd_lanes(xz_first, xz_last),
+                            odd_lanes(yw_first, yw_last)};
     return columns;
 }
 
 static inline Rows rows_of(Lanes3 xyz, float16 w) {
-    float16 xz_lo, xz_hi, yw_lo, yw_hi;
-    xz_lo.even = xyz.x.lo;
-    xz_lo.odd = xyz.z.lo;
-    xz_hi.even = xyz.x.hi;
-    xz_hi.odd = xyz.z.hi;
-    yw_lo.even = xyz.y.lo;
-    yw_lo.odd = w.lo;
-    yw_hi.even = xyz.y.hi;
-    yw_hi.odd = w.hi;
-    Rows rows;
-    rows.part[0].even = xz_lo.lo;
-    rows.part[0].odd = yw_lo.lo;
-    rows.part[1].even = xz_lo.hi;
-    rows.part[1].odd = yw_lo.hi;
-    rows.part[2].even = xz_hi.lo;
-    rows.part[2].odd = yw_hi.lo;
-    rows.part[3].even = xz_hi.hi;
-    rows.part[3].odd = yw_hi.hi;
+    const float16 xz_first = first_by_turns(xyz.x, xyz.z), xz_last = last_by_turns(xyz.x, xyz.z);
+    const float16 yw_first = first_by_turns(xyz.y, w), yw_last = last_by_turns(xyz.y, w);
+    const Rows rows = {{first_by_turns(xz_first, yw_first), last_by_turns(xz_first, yw_first),
+                        first_by_turns(xz_last, yw_last), last_by_turns(xz_last, yw_last)}};
     return rows;
 }
 
