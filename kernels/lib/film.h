@@ -93,14 +93,6 @@ static inline uint film_plane(uint term, uint route) {
     return route == ROUTE_CAMERA ? term : route == ROUTE_REFLECTED ? FILM_REFLECTION : FILM_REFRACTION;
 }
 
-/// Adds radiance to the beauty, and to the plane it belongs to if that is kept.
-static inline void film_add_radiance(const Film* film, uint term, uint route, uint pixel, float3 radiance) {
-    const long4 units = film_units4(film, (float4)(radiance, 0.0f));
-    film_add_units4(film, film_pixel(film, FILM_BEAUTY, pixel), units);
-    const uint plane = film_plane(term, route);
-    if (film_keeps(film, plane)) film_add_units4(film, film_pixel(film, plane, pixel), units);
-}
-
 /// Radiance of two terms for each of up to LANES items: rows of three channels, and a fourth that is 0.
 typedef struct {
     uint count;

@@ -129,6 +129,27 @@ static inline float16 lanes_exp_minus(float16 x) {
     return lanes_exp2(x * -1.44269504088896f);
 }
 
+/// Angles of (x, y) in [-pi, pi]; absolute error below 5e-7. (0, 0) gives 0.
+static inline float16 lanes_angle(float16 y, float16 x) {
+    const float16 ax = fabs(x), ay = fabs(y);
+    const float16 big = max16(ax, ay);
+    // atan on [0, 1] by atan(q) = pi/8 + atan((q - k) / (1 + q k)), k = tan(pi/8), then the series on |r| <= 0.4143.
+    const float16 q = min16(ax, ay) / big;
+    const float16 r = (q - 0.414213562f) / fma(q, (float16)(0.414213562f), (float16)(1.0f));
+    const float16 r2 = r * r;
+    float16 p = (float16)(1.0f / 13.0f);
+    p = fma(p, r2, (float16)(-1.0f / 11.0f));
+    p = fma(p, r2, (float16)(1.0f / 9.0f));
+    p = fma(p, r2, (float16)(-1.0f / 7.0f));
+    p = fma(p, r2, (float16)(1.0f / 5.0f));
+    p = fma(p, r2, (float16)(-1.0f / 3.0f));
+    float16 angle = 0.392699082f + fma(p * r2, r, r);
+    angle = select(angle, 0.5f * PI - angle, ay > ax);
+    angle = select(angle, PI - angle, x < 0.0f);
+    angle = select(angle, -angle, y < 0.0f);
+    return select(angle, (float16)(0.0f), big == 0.0f);
+}
+
 /// Cosine and sine of the angle `turns` * 2 pi, for turns in [0, 1]; absolute error below 2e-7.
 static inline void lanes_cos_sin(float16 turns, float16* cosine, float16* sine) {
     const int16 quarter =

@@ -90,25 +90,4 @@ static inline float max3(float3 v) { return fmax(fmax(v.x, v.y), v.z); }
 /// s * a + b, each component fused.
 static inline float3 fma3(float s, float3 a, float3 b) { return fma((float3)(s), a, b); }
 
-/// Angle of (x, y) in [-pi, pi]; absolute error below 5e-7. (0, 0) gives 0.
-static inline float angle_of(float y, float x) {
-    const float ax = fabs(x), ay = fabs(y);
-    const float big = fmax(ax, ay);
-    if (big == 0.0f) return 0.0f;
-    // atan on [0, 1] by atan(q) = pi/8 + atan((q - k) / (1 + q k)), k = tan(pi/8), then the series on |r| <= 0.4143.
-    const float q = fmin(ax, ay) / big;
-    const float r = (q - 0.414213562f) / fma(q, 0.414213562f, 1.0f);
-    const float r2 = r * r;
-    float p = 1.0f / 13.0f;
-    p = fma(p, r2, -1.0f / 11.0f);
-    p = fma(p, r2, 1.0f / 9.0f);
-    p = fma(p, r2, -1.0f / 7.0f);
-    p = fma(p, r2, 1.0f / 5.0f);
-    p = fma(p, r2, -1.0f / 3.0f);
-    float angle = 0.392699082f + fma(p * r2, r, r);
-    if (ay > ax) angle = 0.5f * PI - angle;
-    if (x < 0.0f) angle = PI - angle;
-    return y < 0.0f ? -angle : angle;
-}
-
 #endif

@@ -19,7 +19,7 @@ kernel void math_probe(global const uint* a, global const uint* b, uint items, u
         lanes_cos_sin((float16)(x), &first, &second);
         r.xy = (float2)(first.s0, second.s0);
     }
-    if (selector == 5) r.x = angle_of(y, x);
+    if (selector == 5) r.x = lanes_angle((float16)(y), (float16)(x)).s0;
     if (selector == 6) {
         lanes_disk((float16)(x), (float16)(y), &first, &second);
         r.xy = (float2)(first.s0, second.s0);
