@@ -39,11 +39,20 @@ static inline void spawn_children(const World* world, const HitLanes* hits, Chil
     spawn(world, hits, &s, weight, split.transmission, split.refracted, -1.0f, 1, refracted);
 }
 
-static inline void write_child(const ChildLanes* c, uint lane, global Ray* child) {
-    store_row(child->origin, row_of(&c->origin, lane));
-    store_row(child->direction, row_of(&c->direction, lane));
-    store_row(child->throughput, row_of(&c->throughput, lane));
-    child->route = ((const uint*)&c->route)[lane];
+/// Writes one branch's children, the first to `place`; returns the place behind them.
+static inline ulong write_children(const ChildLanes* branch, uint groups, global Ray* children, ulong place) {
+    for (uint group = 0; group < groups; ++group) {
+        const ChildLanes* c = branch + group;
+        for (uint rest = c->mask; rest != 0; rest &= rest - 1) {
+            const uint lane = lowest_bit(rest);
+            global Ray* child = children + place++;
+            store_row(child->origin, row_of(&c->origin, lane));
+            store_row(child->direction, row_of(&c->direction, lane));
+            store_row(child->throughput, row_of(&c->throughput, lane));
+            child->route = ((const uint*)&c->route)[lane];
+        }
+    }
+    return place;
 }
 
 /// One work-item a chunk of CHUNK hits: counts its children, takes their places with one atomic add, writes them.
@@ -72,10 +81,7 @@ kernel void secondary(global const Ray* rays, uint first_ray, uint count, global
     atom_add(&counters->parents, (ulong)parents);
     ulong place = atom_add(&counters->children, (ulong)spawned);
     if (place + spawned > capacity) return;  // the host sees the count and stops
-    for (uint group = 0; group < groups; ++group)
-        for (uint rest = reflected[group].mask | refracted[group].mask; rest != 0; rest &= rest - 1) {
-            const uint lane = lowest_bit(rest);
-            if (reflected[group].mask >> lane & 1u) write_child(reflected + group, lane, children + place++);
-            if (refracted[group].mask >> lane & 1u) write_child(refracted + group, lane, children + place++);
-        }
+    // The reflected ones first: a chunk of the next level then has more rays that go the same way.
+    place = write_children(reflected, groups, children, place);
+    write_children(refracted, groups, children, place);
 }
