@@ -48,6 +48,18 @@ static inline void take_hits(RayChunk* c, uint group, int16 hit, uint primitive,
     c->best_v[group] = select(c->best_v[group], v, hit);
 }
 
+/// Of the lanes of a comparison, leaves out those on an edge that lie outside: inside_exactly() in triangle.h.
+static inline int16 keep_inside(int16 hit, uint on_edge, float16 ax, float16 ay, float16 bx, float16 by, float16 cx,
+                                float16 cy) {
+    for (; on_edge != 0; on_edge &= on_edge - 1) {
+        const uint ray = lowest_bit(on_edge);
+        if (!inside_exactly(get_lane(&ax, ray), get_lane(&ay, ray), get_lane(&bx, ray), get_lane(&by, ray),
+                            get_lane(&cx, ray), get_lane(&cy, ray)))
+            ((int*)&hit)[ray] = 0;
+    }
+    return hit;
+}
+
 /// Rays of a group that hit one triangle nearer than their best so far; replaces it. The arithmetic is that of
 /// intersect_triangles() in triangle.h, with rays in the place of triangles.
 static inline bool visit_triangle_group(Packet* p, global const TriangleBlock* block, const BlockView* view, uint lane,
@@ -111,13 +123,8 @@ static inline bool visit_triangle_group(Packet* p, global const TriangleBlock* b
     const uint primitive = block->primitive[lane];
     hit &= (t < best_t) | ((t == best_t) & (primitive < c->best_primitive[group]));
 
-    uint on_edge = lane_mask16(hit & ((ua == 0.0f) | (va == 0.0f) | (wa == 0.0f)));
-    for (; on_edge != 0; on_edge &= on_edge - 1) {
-        const uint ray = lowest_bit(on_edge);
-        if (!inside_exactly(get_lane(&ax, ray), get_lane(&ay, ray), get_lane(&bx, ray), get_lane(&by, ray),
-                            get_lane(&cx, ray), get_lane(&cy, ray)))
-            ((int*)&hit)[ray] = 0;
-    }
+    const int16 on_edge = hit & ((ua == 0.0f) | (va == 0.0f) | (wa == 0.0f));
+    if (any16(on_edge)) hit = keep_inside(hit, lane_mask16(on_edge), ax, ay, bx, by, cx, cy);
     if (!any16(hit)) return false;
     take_hits(c, group, hit, primitive, t, va * inverse, wa * inverse, any_hit);
     return true;
