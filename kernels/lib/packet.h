@@ -216,15 +216,19 @@ static inline bool visit_spheres_groups(Packet* p, global const SphereBlock* blo
     return found;
 }
 
-/// Traces some rays of a chunk, one bit each, one by one below a child.
-static inline void trace_alone(RayChunk* c, const Geometry* geometry, ulong rays, uint child, bool any_hit) {
+/// Traces some rays of a chunk, one bit each, one by one below a child. Whether one of them hit something.
+static inline bool trace_alone(RayChunk* c, const Geometry* geometry, ulong rays, uint child, bool any_hit) {
+    bool found = false;
     for (; rays != 0; rays &= rays - 1) {
         const uint i = lowest_bit64(rays);
         if (get_lane(c->best_t, i) < 0.0f) continue;
         Hit hit = chunk_traverse_ray(c, geometry, i, child, any_hit);
-        if (any_hit && hit.primitive != NO_INDEX) hit.t = -1.0f;
+        if (hit.primitive == ((const uint*)c->best_primitive)[i]) continue;
+        if (any_hit) hit.t = -1.0f;
         chunk_set_hit(c, i, hit);
+        found = true;
     }
+    return found;
 }
 
 /// Finds the closest hit of every ray of a coherent packet among the primitives of the hierarchy, or with any_hit whether
@@ -240,8 +244,7 @@ static void traverse_packet(const Geometry* geometry, Packet* p, bool any_hit) {
         const uint distance = (uint)(item >> 32), child = (uint)item;
         if (as_float(distance & ~(7u | ALL_GROUPS << ENTRY_GROUPS_SHIFT)) > p->farthest_of_all) continue;
         if (popcount(stack_rays[top]) < FEWEST_AT_A_CHILD) {
-            trace_alone(&p->rays, geometry, stack_rays[top], child, any_hit);
-            update_farthest(p);
+            if (trace_alone(&p->rays, geometry, stack_rays[top], child, any_hit)) update_farthest(p);
             continue;
         }
         const uint groups = distance >> ENTRY_GROUPS_SHIFT & ALL_GROUPS;

@@ -65,8 +65,9 @@ static inline bool owns_edge(float ax, float ay, float bx, float by, int facing)
 }
 
 /// Whether the origin lies in the triangle a, b, c of the plane, decided exactly; a point on an edge that two triangles
-/// share lies in one of them.
-static bool inside_exactly(float ax, float ay, float bx, float by, float cx, float cy) {
+/// share lies in one of them. Rarely asked, but inline all the same: around a call, no vector stays in its register.
+static inline __attribute__((always_inline)) bool inside_exactly(float ax, float ay, float bx, float by, float cx,
+                                                                 float cy) {
     const int u = cross_sign(cx, cy, bx, by);
     const int v = cross_sign(ax, ay, cx, cy);
     const int w = cross_sign(bx, by, ax, ay);
