@@ -36,7 +36,7 @@ const PlantedBug bugs[] = {
     {"half_of_fresnel", "lib/material.h", "reflectance = 0.5f * (parallel", "reflectance = 0.25f * (parallel",
      "secondary"},
     {"children_share_a_path", "secondary.cl", "path_child(hits->path, branch)", "path_child(hits->path, 0)", "secondary"},
-    {"green_counted_as_red", "lib/film.h", "FILM_BEAUTY, pixel), a + b)", "FILM_BEAUTY, pixel), (a + b).xxzw)",
+    {"green_counted_as_red", "lib/film.h", "FILM_BEAUTY, pixel), both.row[i])", "FILM_BEAUTY, pixel), both.row[i].xxzw)",
      "film"},
 };
 
