@@ -47,6 +47,7 @@ kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shado
     const bool all_clear = constants->shadows == SHADOWS_NONE;
     if (!all_clear) find_blockers(&geometry, rays, count, blockers);
     uint blocked = 0;
+    Terms terms = {.count = 0};
     for (uint i = 0; i < count; ++i) {
         global const ShadowRay* ray = rays + i;
         float3 left = (float3)(1.0f);
@@ -56,16 +57,16 @@ kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shado
             if (any(left != 0.0f)) left = transmittance(&geometry, &world, ray);
         }
         if (ray->route == ROUTE_CAMERA && film_keeps(&film, FILM_SHADOW)) {
-            film_add(&film, FILM_SHADOW, ray->pixel, left);
-            film_add_units(&film, film_pixel(&film, FILM_SHADOW, ray->pixel) + 3, FILM_ONE);
+            film_add(&film, FILM_SHADOW, ray->pixel, (float4)(left, 1.0f));
         }
         if (any(left != 0.0f)) {
-            film_add_two(&film, ray->route, ray->pixel, FILM_DIFFUSE, left * load3(ray->diffuse), FILM_SPECULAR,
-                         left * load3(ray->specular));
+            terms_put(&terms, ray->pixel, ray->route, left * load3(ray->diffuse), left * load3(ray->specular));
+            if (terms.count == LANES) film_add_terms(&film, FILM_DIFFUSE, FILM_SPECULAR, &terms);
         } else {
             ++blocked;
         }
     }
+    film_add_terms(&film, FILM_DIFFUSE, FILM_SPECULAR, &terms);
     atom_add(&counters->shadow_traced, (ulong)count);
     if (blocked != 0) atom_add(&counters->shadow_blocked, (ulong)blocked);
 }

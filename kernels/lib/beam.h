@@ -53,27 +53,6 @@ static inline float16 twice(float8 v) {
     return pair;
 }
 
-/// One bit a lane, as lane_mask() does for eight.
-static inline uint lane_mask16(int16 comparison) {
-#ifdef __AVX512DQ__
-    return (uint)__builtin_ia32_cvtd2mask512(comparison);
-#else
-    const ulong2 bytes = as_ulong2(convert_char16(comparison)) & 0x0101010101010101ul;
-    const ulong2 masks = bytes * 0x0102040810204080ul >> 56;
-    return (uint)(masks.x | masks.y << 8);
-#endif
-}
-
-/// Whether the comparison holds in some lane.
-static inline bool any16(int16 comparison) {
-#ifdef __AVX512DQ__
-    return lane_mask16(comparison) != 0;
-#else
-    const ulong2 bytes = as_ulong2(convert_char16(comparison));
-    return (bytes.x | bytes.y) != 0;
-#endif
-}
-
 static inline void set_group(float16* pairs, uint group, float value) {
     ((float8*)pairs)[group] = (float8)(value);
 }

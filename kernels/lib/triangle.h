@@ -50,17 +50,6 @@ static inline TriangleFrame triangle_frame(float3 origin, float3 direction) {
     return f;
 }
 
-/// One bit a lane of a comparison's result.
-static inline uint lane_mask(int8 comparison) {
-#ifdef __AVX__
-    return (uint)__builtin_ia32_movmskps256(as_float8(comparison));
-#else
-    // Gathers the eight lowest bits of eight bytes into one byte.
-    const ulong bytes = as_ulong(convert_char8(comparison)) & 0x0101010101010101ul;
-    return (uint)((bytes * 0x0102040810204080ul) >> 56);
-#endif
-}
-
 /// Sign of ax * by - ay * bx without rounding: -1, 0 or 1 (no underflow assumed).
 static inline int cross_sign(float ax, float ay, float bx, float by) {
     const float p = ax * by, q = ay * bx;

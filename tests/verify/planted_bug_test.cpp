@@ -29,14 +29,15 @@ const PlantedBug bugs[] = {
     {"no_offset", "lib/surface.h", "if (!world->constants->robust_offset) return s->position;", "return s->position;",
      "shade"},
     {"filter_without_transmission", "shadow.cl", " * material->transmission", "", "shadow"},
-    {"mirrored_sign", "lib/material.h", "fma3(-2.0f * dot3(direction, n), n, direction)",
-     "fma3(2.0f * dot3(direction, n), n, direction)", "secondary"},
-    {"inverse_index", "lib/material.h", "fma3(-cosine, n, direction) / eta", "fma3(-cosine, n, direction) * eta",
+    {"mirrored_sign", "lib/material.h", "lanes_fma(-2.0f * lanes_dot(direction, n), n, direction)",
+     "lanes_fma(2.0f * lanes_dot(direction, n), n, direction)", "secondary"},
+    {"inverse_index", "lib/material.h", "lanes_div(lanes_fma(-cosine, n, direction), eta)",
+     "lanes_scale(lanes_fma(-cosine, n, direction), eta)", "secondary"},
+    {"half_of_fresnel", "lib/material.h", "reflectance = 0.5f * (parallel", "reflectance = 0.25f * (parallel",
      "secondary"},
-    {"half_of_fresnel", "lib/material.h", "return 0.5f * (parallel", "return 0.25f * (parallel", "secondary"},
-    {"children_share_a_path", "secondary.cl", "path_child(parent->path, branch)", "path_child(parent->path, 0)",
-     "secondary"},
-    {"green_counted_as_red", "lib/film.h", "FILM_BEAUTY, pixel, a + b)", "FILM_BEAUTY, pixel, (a + b).xxz)", "film"},
+    {"children_share_a_path", "secondary.cl", "path_child(hits->path, branch)", "path_child(hits->path, 0)", "secondary"},
+    {"green_counted_as_red", "lib/film.h", "FILM_BEAUTY, pixel), both.row[i])", "FILM_BEAUTY, pixel), both.row[i].xxzw)",
+     "film"},
 };
 
 class Planted : public testing::TestWithParam<PlantedBug> {};
