@@ -1,7 +1,6 @@
 // Local illumination: ambient and emission, and one shadow ray for each light sample that would add something.
 // Reads:  rays [first_ray, first_ray + count), hits [0, count), light samples [first_slot, first_slot + slot_count).
-// Writes: film (ambient and emission, with slot 0); shadow_rays and shadow_counts, a segment of CHUNK rays for each
-// chunk
+// Writes: film (ambient and emission, with slot 0); shadow_rays and shadow_counts, a segment of CHUNK rays for each chunk
 //         and light sample, so that a segment's rays go to one light in the order of their pixels.
 // Next:   shadow.
 
