@@ -1,6 +1,7 @@
 // Sixteen items side by side: one vector instruction works on all of them. A lane gets the same bits as its item would
 // alone, since each operation is rounded by itself; where items differ in what they need, both are computed and one is
-// selected. OpenCL's own float3 fills three of a vector's sixteen places.
+// selected. OpenCL's own float3 fills three of a vector's sixteen places. Elementary functions are our own, because a
+// library's differ between its scalar and its vectorised form.
 #ifndef RAYMILL_LANES_H
 #define RAYMILL_LANES_H
 

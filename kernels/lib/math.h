@@ -1,5 +1,5 @@
-// Arithmetic that gives the same bits wherever and however it is compiled: no contraction, fma only where it is written,
-// and our own elementary functions, because a library's differ between its scalar and its vectorised form.
+// Arithmetic that gives the same bits wherever and however it is compiled: no contraction, and fma only where it is
+// written.
 #ifndef RAYMILL_MATH_H
 #define RAYMILL_MATH_H
 
@@ -14,18 +14,8 @@
 
 static inline float3 load3(global const float* p) { return (float3)(p[0], p[1], p[2]); }
 static inline float3 constant3(constant const float* p) { return (float3)(p[0], p[1], p[2]); }
-static inline float3 private3(const float* p) { return (float3)(p[0], p[1], p[2]); }
-static inline void store3(global float* p, float3 v) {
-    p[0] = v.x;
-    p[1] = v.y;
-    p[2] = v.z;
-}
 
 static inline float dot3(float3 a, float3 b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
-
-static inline float3 cross3(float3 a, float3 b) {
-    return (float3)(fma(a.y, b.z, -(a.z * b.y)), fma(a.z, b.x, -(a.x * b.z)), fma(a.x, b.y, -(a.y * b.x)));
-}
 
 static inline float length3(float3 v) { return sqrt(dot3(v, v)); }
 
@@ -85,8 +75,6 @@ static inline void fetch_early(global const void* address, uint bytes) {
 /// Index of the lowest bit set; mask must not be zero. Compilers know this as one instruction.
 static inline uint lowest_bit(uint mask) { return popcount(~mask & (mask - 1u)); }
 static inline uint lowest_bit64(ulong mask) { return (uint)popcount(~mask & (mask - 1ul)); }
-
-static inline float max3(float3 v) { return fmax(fmax(v.x, v.y), v.z); }
 
 /// s * a + b, each component fused.
 static inline float3 fma3(float s, float3 a, float3 b) { return fma((float3)(s), a, b); }

@@ -35,9 +35,10 @@ const PlantedBug bugs[] = {
      "lanes_scale(lanes_fma(-cosine, n, direction), eta)", "secondary"},
     {"half_of_fresnel", "lib/material.h", "reflectance = 0.5f * (parallel", "reflectance = 0.25f * (parallel",
      "secondary"},
-    {"children_share_a_path", "secondary.cl", "path_child(hits->path, branch)", "path_child(hits->path, 0)", "secondary"},
-    {"green_counted_as_red", "lib/film.h", "FILM_BEAUTY, pixel), both.row[i])", "FILM_BEAUTY, pixel), both.row[i].xxzw)",
-     "film"},
+    {"children_share_a_path", "secondary.cl", "path_child(hits->path, branch)", "path_child(hits->path, 0)",
+     "secondary"},
+    {"green_counted_as_red", "lib/film.h", "FILM_BEAUTY, pixel), both.row[i])",
+     "FILM_BEAUTY, pixel), both.row[i].xxzw)", "film"},
 };
 
 class Planted : public testing::TestWithParam<PlantedBug> {};
