@@ -132,8 +132,8 @@ static inline void chunk_visit_planes(RayChunk* c, const Geometry* geometry) {
     }
 }
 
-/// Goes on with ray i alone, from its best hit so far.
-static inline Hit chunk_traverse_ray(const RayChunk* c, const Geometry* geometry, uint i, bool any_hit) {
+/// Goes on with ray i alone below a child, from its best hit so far.
+static inline Hit chunk_traverse_ray(const RayChunk* c, const Geometry* geometry, uint i, uint child, bool any_hit) {
     const uint octant = get_octant(c, i);
     Query query;
     query.after.t = 0.0f;
@@ -155,7 +155,7 @@ static inline Hit chunk_traverse_ray(const RayChunk* c, const Geometry* geometry
     frame.shear_x = get_lane(c->shear[0], i);
     frame.shear_y = get_lane(c->shear[1], i);
     frame.shear_z = get_lane(c->shear[2], i);
-    traverse(geometry, &query, &slabs, frame, any_hit);
+    traverse(geometry, &query, &slabs, frame, child, any_hit);
     return query.best;
 }
 

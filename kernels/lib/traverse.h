@@ -58,6 +58,8 @@ static inline bool is_later(float t, uint primitive, float than_t, uint than_pri
     return t > than_t || (t == than_t && primitive > than_primitive);
 }
 
+#define ROOT 0u  // the child word of the whole hierarchy
+
 /// Nothing hit up to t_max.
 static inline Hit no_hit(float t_max) {
     const Hit hit = {t_max, 0.0f, 0.0f, NO_INDEX};
@@ -175,14 +177,14 @@ static inline uint push_children(const Geometry* geometry, global const uint* ch
     return top + count;
 }
 
-/// Finds the first hit in the query's range among the primitives of the hierarchy; best stays as it is if there is none.
+/// Finds the first hit in the query's range among the primitives below a child; best stays as it is if there is none.
 /// With any_hit the first one met will do, whichever it is.
-static void traverse(const Geometry* geometry, Query* query, const SlabFrame* slabs, TriangleFrame frame, bool any_hit) {
+static void traverse(const Geometry* geometry, Query* query, const SlabFrame* slabs, TriangleFrame frame, uint child,
+                     bool any_hit) {
     const uint none = query->best.primitive;
     if (geometry->node_count == 0) return;
     ulong stack[STACK_SIZE];
     uint top = 0;
-    uint child = 0;  // the root
     for (;;) {
         if (!(child & CHILD_LEAF)) {
             global const BvhNode* node = geometry->nodes + child;
@@ -220,7 +222,7 @@ static void traverse_all(const Geometry* geometry, Query* query, bool any_hit) {
     visit_planes(geometry, query);
     if (any_hit && query->best.primitive != NO_INDEX) return;
     const SlabFrame slabs = slab_frame(query->origin, query->direction);
-    traverse(geometry, query, &slabs, triangle_frame(query->origin, query->direction), any_hit);
+    traverse(geometry, query, &slabs, triangle_frame(query->origin, query->direction), ROOT, any_hit);
 }
 
 static inline Hit closest_hit(const Geometry* geometry, float3 origin, float3 direction) {

@@ -151,9 +151,9 @@ static inline uint intersect_triangles(global const TriangleBlock* block, const 
     const float8 x = max8(max8(fabs(ax), fabs(bx)), fabs(cx));
     const float8 y = max8(max8(fabs(ay), fabs(by)), fabs(cy));
     const float8 z = max8(max8(fabs(az), fabs(bz)), fabs(cz));
-    const float8 e = max8(max8(fabs(ua), fabs(va)), fabs(wa));
-    const float8 delta_e = 2.0f * ROUNDING * (2.0f * x * y + 5.0f * ((y + z) * x + (x + z) * y));
-    const float8 delta = 3.0f * (6.0f * ROUNDING * e + delta_e) * z * fabs(f.shear_z) * fabs(inverse);
+    // No edge function is larger than their sum, because they have one sign.
+    const float8 delta_e = 2.0f * ROUNDING * fma(12.0f * x, y, 5.0f * z * (x + y));
+    const float8 delta = 3.0f * z * fabs(f.shear_z) * fma(delta_e, fabs(inverse), (float8)(6.0f * ROUNDING));
     // No hit before its own bounds are entered: else a box might cull what comes out a rounding error nearer than the box.
     *t = max8(enter_triangles(block, slabs), distance);
     *u = va * inverse;
