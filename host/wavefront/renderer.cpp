@@ -223,8 +223,6 @@ void Renderer::trace(const Batch& batch) {
     const bool goes_deeper = batch.depth < max_depth_;
     if (goes_deeper) {
         Buffer<Ray>& children = queues_[static_cast<std::size_t>(batch.depth) + 1];
-        device_.queue.enqueueFillBuffer(film_.counters.memory(), cl_ulong{0}, offsetof(Counters, children),
-                                        sizeof(cl_ulong));
         stages_.secondary(device_scene_, rays, hits_, children, film_);
     }
     if (!goes_deeper && !profiler_) {

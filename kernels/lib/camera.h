@@ -61,18 +61,41 @@ typedef struct {
 /// Bits 0, 2 and 4: the column of a place in Z-order.
 static inline uint every_other_bit(uint place) { return (place & 1u) | (place >> 1 & 2u) | (place >> 2 & 4u); }
 
+/// Sixteen samples of a whole tile, from a place that is a multiple of sixteen on: nothing but integers and no branch, of
+/// which the compiler makes vectors.
+static inline void whole_tile_samples(const CameraCursor* cursor, constant CameraRecord* camera, CameraSamples* s) {
+    const uint first = cursor->row * TILE + cursor->column, width = camera->crop[2];
+    const uint left = camera->crop[0], top = camera->crop[1];
+    for (uint lane = 0; lane < LANES; ++lane) {
+        const uint x = cursor->tile_x + every_other_bit(first + lane);
+        const uint y = cursor->tile_y + every_other_bit((first + lane) >> 1);
+        s->x[lane] = left + x;
+        s->y[lane] = top + y;
+        s->pixel[lane] = y * width + x;
+        s->sample[lane] = cursor->sample;
+    }
+}
+
 /// Takes the next samples. A lane may lie past the last sample: its ray is not to be used.
 static inline void camera_samples(CameraCursor* cursor, constant CameraRecord* camera, CameraSamples* s) {
-    for (uint lane = 0; lane < LANES; ++lane) {
-        const bool whole = cursor->columns * cursor->rows == TILE * TILE;
-        const uint place = cursor->row * TILE + cursor->column;
-        const uint x = cursor->tile_x + (whole ? every_other_bit(place) : cursor->column);
-        const uint y = cursor->tile_y + (whole ? every_other_bit(place >> 1) : cursor->row);
-        s->x[lane] = camera->crop[0] + x;
-        s->y[lane] = camera->crop[1] + y;
-        s->pixel[lane] = y * camera->crop[2] + x;
-        s->sample[lane] = cursor->sample;
+    const bool at_sixteen = (cursor->row * TILE + cursor->column) % LANES == 0;
+    if (at_sixteen && cursor->columns * cursor->rows == TILE * TILE) {
+        whole_tile_samples(cursor, camera, s);
+        cursor->row += LANES / TILE - 1;
+        cursor->column = TILE - 1;
         camera_step(cursor, camera);
+    } else {
+        for (uint lane = 0; lane < LANES; ++lane) {
+            const bool whole = cursor->columns * cursor->rows == TILE * TILE;
+            const uint place = cursor->row * TILE + cursor->column;
+            const uint x = cursor->tile_x + (whole ? every_other_bit(place) : cursor->column);
+            const uint y = cursor->tile_y + (whole ? every_other_bit(place >> 1) : cursor->row);
+            s->x[lane] = camera->crop[0] + x;
+            s->y[lane] = camera->crop[1] + y;
+            s->pixel[lane] = y * camera->crop[2] + x;
+            s->sample[lane] = cursor->sample;
+            camera_step(cursor, camera);
+        }
     }
     const uint seed = camera->seed, width = camera->width;
     for (uint lane = 0; lane < LANES; ++lane) s->path[lane] = path_camera(seed, s->y[lane] * width + s->x[lane]);
