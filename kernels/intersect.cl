@@ -1,6 +1,6 @@
 // The closest hit of every ray of a batch; rays that miss bring home the background.
 // Reads:  rays [first_ray, first_ray + count).
-// Writes: hits [0, count); film, where a ray misses.
+// Writes: hits [0, count); film, where a ray misses; counters->children, which `secondary` of the same wave counts from 0.
 // Next:   shade.
 
 #include "lib/environment.h"
@@ -44,6 +44,7 @@ kernel void intersect(global const Ray* rays, uint first_ray, uint count, global
     const uint begin = get_global_id(0) * RAYS_A_WORK_ITEM;
     const uint end = min(begin + RAYS_A_WORK_ITEM, count);
     if (begin >= count) return;
+    if (begin == 0) counters->children = 0;
     intersect_chunk(&geometry, rays + first_ray + begin, end - begin, hits + begin);
     uint misses[RAYS_A_WORK_ITEM], missed = 0;
     for (uint i = begin; i < end; ++i) {

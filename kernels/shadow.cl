@@ -5,28 +5,7 @@
 
 #include "lib/blockers.h"
 #include "lib/film.h"
-#include "lib/surface.h"
-
-/// What a primitive in the way leaves of the light: all black if it blocks it.
-static inline float3 filter_of(const World* world, uint primitive) {
-    if (world->constants->shadows != SHADOWS_FILTERED || !world->constants->any_filter) return (float3)(0.0f);
-    global const Material* material = world->materials + material_of(world, primitive);
-    return load3(material->base_color) * material->transmission;
-}
-
-/// What is left of light from t_max away: filtered by every transmissive surface on the way, each crossing once.
-static inline float3 transmittance(const Geometry* geometry, const World* world, global const ShadowRay* ray) {
-    const float3 origin = load3(ray->origin), direction = load3(ray->direction);
-    // In the order of distance, so that the product's bits do not depend on the hierarchy.
-    float3 left = (float3)(1.0f);
-    Hit hit = no_hit(0.0f);
-    for (;;) {
-        hit = closest_hit_after(geometry, origin, direction, hit, ray->t_max);
-        if (hit.primitive == NO_INDEX) return left;
-        left *= filter_of(world, hit.primitive);
-        if (!any(left != 0.0f)) return left;
-    }
-}
+#include "lib/transmittance.h"
 
 /// One work-item a segment, or one ray where rays are traced alone.
 kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shadow_counts, uint segment_count,
@@ -54,7 +33,8 @@ kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shado
         if (!all_clear && blockers[i] != NO_INDEX) {
             left = filter_of(&world, blockers[i]);
             // Another surface on the way may block what this one lets through.
-            if (any(left != 0.0f)) left = transmittance(&geometry, &world, ray);
+            if (any(left != 0.0f))
+                left = transmittance(&geometry, &world, load3(ray->origin), load3(ray->direction), ray->t_max);
         }
         if (ray->route == ROUTE_CAMERA && film_keeps(&film, FILM_SHADOW)) {
             film_add(&film, FILM_SHADOW, ray->pixel, (float4)(left, 1.0f));

@@ -1,4 +1,4 @@
-// The closest hit and the light that passes: one ray through the eight-wide hierarchy, and then the infinite planes.
+// The closest hit, or any: one ray through the eight-wide hierarchy, and then the infinite planes.
 // What is found does not depend on the hierarchy: see slabs.h for the boxes, and is_later for ties.
 // Source: node layout and octant order, Wald et al., "Getting Rid of Packets", 2008.
 #ifndef RAYMILL_TRAVERSE_H
@@ -128,12 +128,16 @@ static inline void visit_leaf(const Geometry* geometry, uint child, const SlabFr
     }
 }
 
+/// Not positive where the plane lies behind, not finite where the ray is parallel to it.
+static inline float distance_to_plane(global const Plane* plane, float3 origin, float3 direction) {
+    const float3 normal = load3(plane->normal);
+    const float height = dot3(normal, origin - load3(plane->point));
+    return -height / dot3(normal, direction);
+}
+
 static inline void visit_planes(const Geometry* geometry, Query* query) {
     for (uint i = 0; i < geometry->plane_count; ++i) {
-        global const Plane* plane = geometry->planes + i;
-        const float3 normal = load3(plane->normal);
-        const float height = dot3(normal, query->origin - load3(plane->point));
-        const float t = -height / dot3(normal, query->direction);
+        const float t = distance_to_plane(geometry->planes + i, query->origin, query->direction);
         if (!(t > 0.0f && t < INFINITY) || !accepts(query, t, geometry->first_plane + i)) continue;
         query->best.t = t;
         query->best.u = 0.0f;
@@ -185,14 +189,14 @@ static inline uint push_children(const Geometry* geometry, global const uint* ch
     return top + count;
 }
 
-/// Finds the first hit in the query's range among the primitives below a child; best stays as it is if there is none.
+/// Finds the first hit in the query's range among the primitives of the hierarchy; best stays as it is if there is none.
 /// With any_hit the first one met will do, whichever it is.
-static void traverse(const Geometry* geometry, Query* query, const SlabFrame* slabs, TriangleFrame frame, uint child,
-                     bool any_hit) {
+static void traverse(const Geometry* geometry, Query* query, const SlabFrame* slabs, TriangleFrame frame, bool any_hit) {
     const uint none = query->best.primitive;
     if (geometry->node_count == 0) return;
     ulong stack[STACK_SIZE];
     uint top = 0;
+    uint child = ROOT;
     for (;;) {
         if (!(child & CHILD_LEAF)) {
             global const BvhNode* node = geometry->nodes + child;
@@ -223,18 +227,13 @@ static void traverse_all(const Geometry* geometry, Query* query, bool any_hit) {
     visit_planes(geometry, query);
     if (any_hit && query->best.primitive != NO_INDEX) return;
     const SlabFrame slabs = slab_frame(query->origin, query->direction);
-    traverse(geometry, query, &slabs, triangle_frame(query->origin, query->direction), ROOT, any_hit);
-}
-
-/// The closest hit in front of the ray later than `after`; primitive is NO_INDEX if there is none.
-static inline Hit closest_hit_after(const Geometry* geometry, float3 origin, float3 direction, Hit after, float t_max) {
-    Query query = {origin, direction, after, no_hit(t_max)};
-    traverse_all(geometry, &query, false);
-    return query.best;
+    traverse(geometry, query, &slabs, triangle_frame(query->origin, query->direction), any_hit);
 }
 
 static inline Hit closest_hit(const Geometry* geometry, float3 origin, float3 direction) {
-    return closest_hit_after(geometry, origin, direction, no_hit(0.0f), INFINITY);
+    Query query = {origin, direction, no_hit(0.0f), no_hit(INFINITY)};
+    traverse_all(geometry, &query, false);
+    return query.best;
 }
 
 /// Some hit up to t_max, whichever is found first; primitive is NO_INDEX if nothing is there.
