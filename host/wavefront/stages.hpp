@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "profile/profile.hpp"
@@ -33,8 +34,8 @@ struct Film {
     bool pixels_once = false;
 };
 
-/// Film::pixels_once of launches on rays of this depth: camera rays of one sample a pixel have each its own. slots: light
-/// samples of the pass, for shadow, since a hit has a shadow ray for each.
+/// Film::pixels_once of launches on rays of this depth: camera rays of one sample a pixel have each its own. slots:
+/// light samples of the pass, for shadow, since a hit has a shadow ray for each.
 inline bool pixels_once(int depth, int spp, uint slots = 1) {
     return depth == 0 && spp == 1 && slots == 1;
 }
@@ -70,6 +71,10 @@ class Stages {
 
     void observe(LaunchObserver observer) { observer_ = std::move(observer); }
 
+    /// While on, a launch of no items runs one work-item, which finds nothing to do: runtimes compile a kernel when it
+    /// is launched for the first time.
+    void run_empty_launches(bool on) { runs_empty_launches_ = on; }
+
     void generate(const DeviceScene& scene, std::uint64_t first_sample, uint count, Buffer<Ray>& rays);
     void intersect(const DeviceScene& scene, QueueRange<Ray> rays, Buffer<Hit>& hits, Film& film);
     void shade(const DeviceScene& scene, QueueRange<Ray> rays, const Buffer<Hit>& hits, SlotRange slots,
@@ -93,12 +98,20 @@ class Stages {
         std::size_t local_size;
         uint items;  // of a work-item
     };
+    cl::Program build(const std::vector<std::string>& files) const;
+    Stage chunk_stage(const cl::Program& program, profile::Stage name) const;
+    void build_extras();
     template <class... Arguments>
     void launch(Stage& stage, uint work_items, uint items, const Arguments&... arguments);
 
     const Device& device_;
+    std::size_t work_group_;
+    std::string kernel_dir_;
+    bool packets_;
     LaunchObserver observer_;
-    Stage generate_, intersect_, shade_, features_, shadow_, secondary_, tally_, resolve_;
+    bool runs_empty_launches_ = false;
+    Stage generate_, intersect_, shade_, shadow_, secondary_, resolve_;
+    std::optional<Stage> features_, tally_;  // most frames need neither: built when first launched
 };
 
 }  // namespace raymill

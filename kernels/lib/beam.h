@@ -53,27 +53,6 @@ static inline float16 twice(float8 v) {
     return pair;
 }
 
-/// One bit a lane, as lane_mask() does for eight.
-static inline uint lane_mask16(int16 comparison) {
-#ifdef __AVX512DQ__
-    return (uint)__builtin_ia32_cvtd2mask512(comparison);
-#else
-    const ulong2 bytes = as_ulong2(convert_char16(comparison)) & 0x0101010101010101ul;
-    const ulong2 masks = bytes * 0x0102040810204080ul >> 56;
-    return (uint)(masks.x | masks.y << 8);
-#endif
-}
-
-/// Whether the comparison holds in some lane.
-static inline bool any16(int16 comparison) {
-#ifdef __AVX512DQ__
-    return lane_mask16(comparison) != 0;
-#else
-    const ulong2 bytes = as_ulong2(convert_char16(comparison));
-    return (bytes.x | bytes.y) != 0;
-#endif
-}
-
 static inline void set_group(float16* pairs, uint group, float value) {
     ((float8*)pairs)[group] = (float8)(value);
 }
@@ -105,18 +84,25 @@ static inline void prepare_depth(Packet* p, uint group) {
 
 /// Widened by more than what the tests of single rays may be off: a few roundings of the origins, the waist and what lies
 /// between for the bound, of the depth for the slope (slopes are at most 1).
-static inline void prepare_beam(Packet* p, uint group) {
-    const float16 to_waist = p->waist - p->rays.origin[p->axis[2]][group];
-    for (uint a = 0; a < 2; ++a) {
-        const float16 origin = p->rays.origin[p->axis[a]][group], slope = p->rays.shear[a][group];
-        const float16 place = fma(slope, to_waist, origin);
-        const float slack = 32.0f * ROUNDING * (max_lane(fabs(origin) + fabs(to_waist)) + fabs(p->waist));
-        const float rising = max_lane(slope * p->side) + 32.0f * ROUNDING;
-        const float falling = min_lane(slope * p->side) - 32.0f * ROUNDING;
-        set_group(p->slope[0][a], group, -falling);
-        set_group(p->slope[1][a], group, rising);
-        set_group(p->bound[0][a], group, slack - min_lane(place));
-        set_group(p->bound[1][a], group, slack + max_lane(place));
+static inline void prepare_beams(Packet* p) {
+    float16 size = (float16)(0.0f);
+    for (uint group = 0; group < GROUPS; ++group) {
+        const float16 to_waist = fabs(p->waist - p->rays.origin[p->axis[2]][group]);
+        size = max16(to_waist + fabs(p->rays.origin[p->axis[0]][group]), size);
+        size = max16(to_waist + fabs(p->rays.origin[p->axis[1]][group]), size);
+    }
+    const float slack = 32.0f * ROUNDING * (max_lane(size) + fabs(p->waist));
+    for (uint group = 0; group < GROUPS; ++group) {
+        const float16 to_waist = p->waist - p->rays.origin[p->axis[2]][group];
+        for (uint a = 0; a < 2; ++a) {
+            const float16 slope = p->rays.shear[a][group];
+            const float16 place = fma(slope, to_waist, p->rays.origin[p->axis[a]][group]);
+            const float16 rising = slope * p->side;
+            set_group(p->slope[0][a], group, 32.0f * ROUNDING - min_lane(rising));
+            set_group(p->slope[1][a], group, 32.0f * ROUNDING + max_lane(rising));
+            set_group(p->bound[0][a], group, slack - min_lane(place));
+            set_group(p->bound[1][a], group, slack + max_lane(place));
+        }
     }
 }
 
@@ -154,6 +140,9 @@ static inline void find_waist(Packet* p) {
     const RayChunk* c = &p->rays;
     const uint z = p->axis[2];
     const float travel = p->sign[z] ? -1.0f : 1.0f;
+    p->waist = c->origin[z][0].s0;
+    p->side = travel;
+    if (p->is_pinhole) return;
     float16 start16 = (float16)(INFINITY), end16 = (float16)(-INFINITY);
     for (uint group = 0; group < GROUPS; ++group) {
         const float16 start = c->origin[z][group] * travel;
@@ -162,9 +151,7 @@ static inline void find_waist(Packet* p) {
     }
     const float start = min_lane(start16), end = max_lane(end16);
     p->waist = start * travel;
-    p->side = travel;
     float width = width_at(p, p->waist);
-    if (width == 0.0f) return;
     if (end < INFINITY) {
         const float width_at_end = width_at(p, end * travel);
         if (width_at_end < width) {
@@ -182,6 +169,14 @@ static inline void find_waist(Packet* p) {
     }
 }
 
+/// Whether all rays start at one point.
+static inline bool have_one_origin(const RayChunk* c) {
+    int16 other = (int16)(0);
+    for (uint axis = 0; axis < 3; ++axis)
+        for (uint group = 0; group < GROUPS; ++group) other |= c->origin[axis][group] != c->origin[axis][0].s0;
+    return !any16(other);
+}
+
 /// Makes a packet of its coherent rays.
 static inline void packet_prepare(Packet* p) {
     const uint octant = p->rays.octant[0].s0;
@@ -190,12 +185,10 @@ static inline void packet_prepare(Packet* p) {
     p->axis[0] = frame.x;
     p->axis[1] = frame.y;
     p->axis[2] = frame.z;
+    p->is_pinhole = have_one_origin(&p->rays);
     find_waist(p);
-    p->is_pinhole = width_at(p, p->waist) == 0.0f && p->waist == p->rays.origin[frame.z][0].s0;
-    for (uint group = 0; group < GROUPS; ++group) {
-        prepare_depth(p, group);
-        prepare_beam(p, group);
-    }
+    for (uint group = 0; group < GROUPS; ++group) prepare_depth(p, group);
+    prepare_beams(p);
     update_farthest(p);
 }
 
@@ -260,8 +253,8 @@ static inline uint groups_meeting_triangles(const Packet* p, global const Triang
     return mask;
 }
 
-/// Whether a ray of the group meets child `lane`.
-static inline bool group_meets(const Packet* p, global const BvhNode* node, uint lane, uint group) {
+/// Which rays of the group meet child `lane`.
+static inline uint rays_meeting(const Packet* p, global const BvhNode* node, uint lane, uint group) {
     float16 enter = (float16)(0.0f), leave = p->rays.best_t[group];
 #pragma unroll
     for (uint axis = 0; axis < 3; ++axis) {
@@ -270,7 +263,7 @@ static inline bool group_meets(const Packet* p, global const BvhNode* node, uint
         enter = max16(fma((float16)(near), inverse, p->rays.near[axis][group]), enter);
         leave = min16(fma((float16)(far), inverse, p->rays.far[axis][group]), leave);
     }
-    return any16(enter <= leave * (1.0f + 8.0f * ROUNDING));
+    return lane_mask16(enter <= leave * (1.0f + 8.0f * ROUNDING));
 }
 
 /// One bit a group in the lowest four, spread to all boxes of such a mask; and the groups that meet one box.
