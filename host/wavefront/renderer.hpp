@@ -18,6 +18,13 @@
 
 namespace raymill {
 
+/// Stages that every frame may need.
+inline constexpr std::array frame_stages = {profile::Stage::generate, profile::Stage::intersect, profile::Stage::shade,
+                                            profile::Stage::shadow, profile::Stage::secondary};
+
+/// What is left to the helper of RenderOptions: about half of the work, and not what is compiled first.
+inline constexpr std::array compile_helper_stages = {profile::Stage::shade, profile::Stage::secondary};
+
 struct RenderOptions {
     MemoryRequest memory;
     FilmPlanes planes;           // what the film keeps beside the beauty
@@ -26,14 +33,10 @@ struct RenderOptions {
     Traversal traversal = Traversal::automatic;
     std::string kernel_dir;  // empty: the embedded kernels
     // Stages whose kernels are to be compiled before the first frame; the others' are when they are first launched.
-    std::vector<profile::Stage> compile = {profile::Stage::generate, profile::Stage::intersect, profile::Stage::shade,
-                                           profile::Stage::shadow, profile::Stage::secondary};
+    std::vector<profile::Stage> compile{frame_stages.begin(), frame_stages.end()};
     // A command that compiles the kernels of compile_helper_stages into the runtime's cache; empty: none.
     std::vector<std::string> compile_helper;
 };
-
-/// What is left to the helper: about half of the work, and not what is compiled first.
-inline constexpr std::array compile_helper_stages = {profile::Stage::shade, profile::Stage::secondary};
 
 struct RayCounts {
     std::uint64_t camera = 0;
