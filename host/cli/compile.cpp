@@ -56,7 +56,7 @@ Command add_compile_command(CLI::App& app) {
     CLI::App& command =
         *app.add_subcommand("compile", "Compile the kernels for a device ahead of the first render, into its cache");
     std::map<std::string, profile::Stage> names;
-    for (const profile::Stage stage : RenderOptions().compile) names[std::string(profile::stage_name(stage))] = stage;
+    for (const profile::Stage stage : compiled_stages) names[std::string(profile::stage_name(stage))] = stage;
     command.add_option("--stages", arguments->stages, "Only these, as in shade,shadow")
         ->type_name("LIST")
         ->delimiter(',')

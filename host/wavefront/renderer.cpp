@@ -80,6 +80,7 @@ void Renderer::compile_kernels(const RenderOptions& options) try {
         return std::ranges::find(compile_helper_stages, stage) != compile_helper_stages.end();
     };
     std::vector<profile::Stage> stages = options.compile;
+    if (stages.empty()) stages.assign(compiled_stages.begin(), compiled_stages.end());
     const auto helped = std::ranges::stable_partition(stages, std::not_fn(is_helped)).begin();
     std::optional<ChildProcess> helper;
     stages_.run_empty_launches(true);
@@ -110,7 +111,7 @@ void Renderer::compile(profile::Stage stage) {
             if (max_depth_ > 0) stages_.secondary(device_scene_, no_rays, hits_, queues_[1], film_);
             return;
         default:
-            return;  // quickly compiled: when a frame needs them
+            return;  // not of compiled_stages
     }
 }
 

@@ -18,13 +18,6 @@
 
 namespace raymill {
 
-/// Stages that every frame may need.
-inline constexpr std::array frame_stages = {profile::Stage::generate, profile::Stage::intersect, profile::Stage::shade,
-                                            profile::Stage::shadow, profile::Stage::secondary};
-
-/// What is left to the helper of RenderOptions: about half of the work, and not what is compiled first.
-inline constexpr std::array compile_helper_stages = {profile::Stage::shade, profile::Stage::secondary};
-
 struct RenderOptions {
     MemoryRequest memory;
     FilmPlanes planes;           // what the film keeps beside the beauty
@@ -32,11 +25,19 @@ struct RenderOptions {
     std::size_t work_group = 0;  // items; 0: what suits each stage
     Traversal traversal = Traversal::automatic;
     std::string kernel_dir;  // empty: the embedded kernels
-    // Stages whose kernels are to be compiled before the first frame; the others' are when they are first launched.
-    std::vector<profile::Stage> compile{frame_stages.begin(), frame_stages.end()};
+    // Stages of compiled_stages whose kernels are to be compiled before the first frame; empty: all.
+    std::vector<profile::Stage> compile;
     // A command that compiles the kernels of compile_helper_stages into the runtime's cache; empty: none.
     std::vector<std::string> compile_helper;
 };
+
+/// Those whose kernels take long to compile; the others' are compiled when a frame first launches them.
+inline constexpr std::array compiled_stages = {profile::Stage::generate, profile::Stage::intersect,
+                                               profile::Stage::shade, profile::Stage::shadow,
+                                               profile::Stage::secondary};
+
+/// What is left to the helper: about half of the work, and not what is compiled first.
+inline constexpr std::array compile_helper_stages = {profile::Stage::shade, profile::Stage::secondary};
 
 struct RayCounts {
     std::uint64_t camera = 0;
