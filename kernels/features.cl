@@ -12,7 +12,7 @@ static inline float3 albedo(const Shading* s) {
     return s->diffuse * s->local_share + load3(s->material->base_color) * passed_on;
 }
 
-static inline void add_camera_hit(const Film* film, const World* world, constant CameraRecord* camera, uint object,
+static inline void add_camera_hit(Film* film, const World* world, constant CameraRecord* camera, uint object,
                                   const Shading* s) {
     const uint pixel = s->ray->pixel;
     if (film_keeps(film, FILM_ALBEDO)) film_add(film, FILM_ALBEDO, pixel, albedo(s));
@@ -35,9 +35,9 @@ kernel void features(global const Ray* rays, uint first_ray, uint count, uint de
                      global const Vertex* vertices, global const Triangle* triangles, global const Sphere* spheres,
                      global const Plane* planes, global const Material* materials, global const Texture* textures,
                      global const float* texels, constant CameraRecord* camera, constant SceneConstants* constants,
-                     global long* film_sums, global Counters* counters, uint pixels_once) {
+                     global long* film_sums, global Counters* counters, uint film_flags) {
     const World world = {vertices, triangles, spheres, planes, materials, textures, texels, constants};
-    const Film film = {film_sums, counters, constants, pixels_once != 0};
+    Film film = film_of(film_sums, counters, constants, film_flags);
     const uint begin = get_global_id(0) * CHUNK;
     const uint end = min(begin + CHUNK, count);
     for (uint i = begin; i < end; ++i) {
@@ -45,10 +45,15 @@ kernel void features(global const Ray* rays, uint first_ray, uint count, uint de
         if (film_keeps(&film, FILM_IDS)) {
             global long* ids = film_pixel(&film, FILM_IDS, ray->pixel);
             atom_max(ids + 2, (long)depth);
-            if (ray->route == ROUTE_CAMERA) atom_inc(ids + 3);
+            ++film.atomics;
+            if (ray->route == ROUTE_CAMERA) {
+                atom_inc(ids + 3);
+                ++film.atomics;
+            }
         }
         if (ray->route != ROUTE_CAMERA || hits[i].primitive == NO_INDEX) continue;
         const Shading shading = shading_at(&world, ray, hits[i]);
         add_camera_hit(&film, &world, camera, object_of(&world, hits[i].primitive), &shading);
     }
+    film_count_atomics(&film, ATOMICS_FEATURES);
 }

@@ -26,8 +26,8 @@ kernel void intersect(global const Ray* rays, uint first_ray, uint count, global
                       global const TriangleBlock* triangle_blocks, global const SphereBlock* sphere_blocks,
                       global const Plane* planes, global const Texture* textures, global const float* texels,
                       constant SceneConstants* constants, global Hit* hits, global long* film_sums,
-                      global Counters* counters, uint pixels_once) {
-    const Film film = {film_sums, counters, constants, pixels_once != 0};
+                      global Counters* counters, uint film_flags) {
+    Film film = film_of(film_sums, counters, constants, film_flags);
     const Geometry geometry = scene_geometry(nodes, triangle_blocks, sphere_blocks, planes, constants);
     const uint begin = get_global_id(0) * RAYS_A_WORK_ITEM;
     const uint end = min(begin + RAYS_A_WORK_ITEM, count);
@@ -43,4 +43,5 @@ kernel void intersect(global const Ray* rays, uint first_ray, uint count, global
             film_add_radiance(&film, FILM_EMISSION, ray->route, ray->pixel, load3(ray->throughput) * sky);
         }
     }
+    film_count_atomics(&film, ATOMICS_INTERSECT);
 }

@@ -1,6 +1,6 @@
 // Visibility of the light samples; what is not blocked adds its term.
 // Reads:  shadow_rays and shadow_counts, segments of CHUNK.
-// Writes: film.
+// Writes: film; counters->shadow_traced and shadow_blocked.
 // Next:   the next range of light samples, or secondary.
 
 #include "lib/film.h"
@@ -50,8 +50,8 @@ kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shado
                    global const SphereBlock* sphere_blocks, global const Plane* planes,
                    global const Triangle* triangles, global const Sphere* spheres, global const Material* materials,
                    constant SceneConstants* constants, global long* film_sums, global Counters* counters,
-                   uint pixels_once) {
-    const Film film = {film_sums, counters, constants, pixels_once != 0};
+                   uint film_flags) {
+    Film film = film_of(film_sums, counters, constants, film_flags);
     const Geometry geometry = scene_geometry(nodes, triangle_blocks, sphere_blocks, planes, constants);
     const World world = {0, triangles, spheres, planes, materials, 0, 0, constants};
     const uint first = get_global_id(0) * RAYS_A_WORK_ITEM % CHUNK;
@@ -82,6 +82,7 @@ kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shado
             ++blocked;
         }
     }
-    atom_add(&counters->shadow_traced, (ulong)count);
-    if (blocked != 0) atom_add(&counters->shadow_blocked, (ulong)blocked);
+    film_count(&film, &counters->shadow_traced, count);
+    film_count(&film, &counters->shadow_blocked, blocked);
+    film_count_atomics(&film, ATOMICS_SHADOW);
 }

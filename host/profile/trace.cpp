@@ -58,6 +58,9 @@ void write_launch(Events& events, const Launch& l) {
                       {"items out", l.items_out},
                       {"work-groups", l.groups},
                       {"places", l.places},
+                      {"bytes read", l.traffic.bytes_read},
+                      {"bytes written", l.traffic.bytes_written},
+                      {"atomics", l.traffic.atomics},
                       {"queued", events.microseconds(l.queued)},
                       {"submitted", events.microseconds(l.submitted)}};
     if (l.wave != no_wave) {

@@ -29,49 +29,29 @@ typedef struct {
     bool is_pinhole;  // all rays start at one point: beams tell as much as rays
 } Packet;
 
-// Halves of vectors are taken through pointers: Oclgrind 21.10 reads beyond its record of what was written for v.hi and
-// (float16)(v, v).
-
-/// The smallest and the largest lane.
 static inline float min_lane(float16 v) {
-    const float8* half16 = (const float8*)&v;
-    const float8 v8 = min8(half16[0], half16[1]);
-    const float4* half8 = (const float4*)&v8;
-    const float4 v4 = select(half8[1], half8[0], half8[0] < half8[1]);
-    const float2* half4 = (const float2*)&v4;
-    const float2 v2 = select(half4[1], half4[0], half4[0] < half4[1]);
+    const float8 v8 = min8(v.lo, v.hi);
+    const float4 v4 = select(v8.hi, v8.lo, v8.lo < v8.hi);
+    const float2 v2 = select(v4.hi, v4.lo, v4.lo < v4.hi);
     return v2.x < v2.y ? v2.x : v2.y;
 }
 
-static inline float max_lane(float16 v) { return -min_lane(-v); }
-
-static inline float16 twice(float8 v) {
-    float16 pair;
-    float8* half16 = (float8*)&pair;
-    half16[0] = v;
-    half16[1] = v;
-    return pair;
+static inline float max_lane(float16 v) {
+    const float8 v8 = max8(v.lo, v.hi);
+    const float4 v4 = select(v8.hi, v8.lo, v8.lo > v8.hi);
+    const float2 v2 = select(v4.hi, v4.lo, v4.lo > v4.hi);
+    return v2.x > v2.y ? v2.x : v2.y;
 }
 
-/// One bit a lane, as lane_mask() does for eight.
+static inline float16 twice(float8 v) { return (float16)(v, v); }
+
 static inline uint lane_mask16(int16 comparison) {
-#ifdef __AVX512DQ__
-    return (uint)__builtin_ia32_cvtd2mask512(comparison);
-#else
-    const ulong2 bytes = as_ulong2(convert_char16(comparison)) & 0x0101010101010101ul;
-    const ulong2 masks = bytes * 0x0102040810204080ul >> 56;
-    return (uint)(masks.x | masks.y << 8);
-#endif
+    return lane_mask(comparison.lo) | lane_mask(comparison.hi) << 8;
 }
 
-/// Whether the comparison holds in some lane.
 static inline bool any16(int16 comparison) {
-#ifdef __AVX512DQ__
-    return lane_mask16(comparison) != 0;
-#else
     const ulong2 bytes = as_ulong2(convert_char16(comparison));
     return (bytes.x | bytes.y) != 0;
-#endif
 }
 
 static inline void set_group(float16* pairs, uint group, float value) {
@@ -211,7 +191,7 @@ static inline uint groups_meeting_children(const Packet* p, global const BvhNode
     const float16 lower_y = twice(aligned8(node->bounds[0][p->axis[1]]));
     const float16 upper_y = twice(aligned8(node->bounds[1][p->axis[1]]));
     uint mask = 0;
-    float16 soonest = (float16)(INFINITY);
+    *entry = (float8)(INFINITY);
 #pragma unroll
     for (uint pair = 0; pair < PAIRS; ++pair) {
         const float16 k0 = p->bound[0][0][pair] + upper_x, k1 = p->bound[0][1][pair] + upper_y;
@@ -227,10 +207,8 @@ static inline uint groups_meeting_children(const Packet* p, global const BvhNode
         const float16 leave = fma(leave_z, p->leave_scale[pair], p->leave_offset[pair]);
         const int16 meets = (min16(inside, leave) >= 0.0f) & (enter <= p->farthest[pair]);
         mask |= lane_mask16(meets) << (2 * BVH_WIDTH * pair);
-        soonest = min16(enter, soonest);
+        *entry = min8(min8(enter.lo, enter.hi), *entry);
     }
-    const float8* of_pair = (const float8*)&soonest;
-    *entry = min8(of_pair[0], of_pair[1]);
     return mask;
 }
 

@@ -9,8 +9,32 @@ typedef struct {
     global long* sums;
     global Counters* counters;
     constant SceneConstants* constants;
-    bool pixels_once;  // no two items of the launch have the same pixel, so that plain adds do
+    uint flags;    // FILM_PIXELS_ONCE ...
+    uint atomics;  // operations that this work-item has issued
 } Film;
+
+static inline Film film_of(global long* sums, global Counters* counters, constant SceneConstants* constants,
+                           uint flags) {
+    const Film film = {sums, counters, constants, flags, 0};
+    return film;
+}
+
+/// Adds to one of the counters that every frame needs; none where there is nothing to add.
+static inline void film_count(Film* film, global ulong* counter, uint number) {
+    if (number == 0) return;
+    atom_add(counter, (ulong)number);
+    ++film->atomics;
+}
+
+/// Adds to one of those that only the profile needs.
+static inline void film_profile(const Film* film, global ulong* counter, uint number) {
+    if ((film->flags & FILM_COUNTED) && number != 0) atom_add(counter, (ulong)number);
+}
+
+/// The kernel's last call, with its place in Counters::atomics.
+static inline void film_count_atomics(const Film* film, uint kernel_place) {
+    film_profile(film, film->counters->atomics + kernel_place, film->atomics);
+}
 
 /// The pixel's channels of a plane that is kept.
 static inline global long* film_pixel(const Film* film, uint plane, uint pixel) {
@@ -21,19 +45,22 @@ static inline bool film_keeps(const Film* film, uint plane) { return film->const
 
 /// What is stored of a value that the film does not hold: nothing of NaN, FILM_LIMIT of what is beyond it. Both are
 /// counted.
-static float film_cut(const Film* film, float value) {
+static float film_cut(global Counters* counters, float value) {
     if (isnan(value)) {
-        atom_inc(&film->counters->not_a_number);
+        atom_inc(&counters->not_a_number);
         return 0.0f;
     }
-    atom_inc(&film->counters->saturated);
+    atom_inc(&counters->saturated);
     return copysign(FILM_LIMIT, value);
 }
 
 /// A value in units of the film, to the nearest, ties to even. NaN is left out and counted; what is beyond FILM_LIMIT
 /// is cut and counted.
-static inline long film_units(const Film* film, float value) {
-    if (!(fabs(value) <= FILM_LIMIT)) value = film_cut(film, value);
+static inline long film_units(Film* film, float value) {
+    if (!(fabs(value) <= FILM_LIMIT)) {
+        value = film_cut(film->counters, value);
+        ++film->atomics;
+    }
     value *= 4294967296.0f;
     // Floats from 2^23 on are whole. To smaller ones 2^23 is added, which leaves no bits behind the point: rint(),
     // without the dozen instructions that it may take.
@@ -41,32 +68,33 @@ static inline long film_units(const Film* film, float value) {
     return (long)((value + whole) - whole);
 }
 
-static inline long3 film_units3(const Film* film, float3 value) {
+static inline long3 film_units3(Film* film, float3 value) {
     return (long3)(film_units(film, value.x), film_units(film, value.y), film_units(film, value.z));
 }
 
-static inline void film_add_units(const Film* film, global long* sum, long units) {
+static inline void film_add_units(Film* film, global long* sum, long units) {
     if (units == 0) return;
     long before;
-    if (film->pixels_once) {
+    if (film->flags & FILM_PIXELS_ONCE) {
         before = *sum;
         *sum = (long)((ulong)before + (ulong)units);
     } else {
         before = atom_add(sum, units);
+        ++film->atomics;
     }
     const long after = (long)((ulong)before + (ulong)units);
-    if (((before ^ after) & (units ^ after)) < 0) atom_inc(&film->counters->saturated);
+    if (((before ^ after) & (units ^ after)) < 0) film_count(film, &film->counters->saturated, 1);
 }
 
 /// Adds to the first three channels of one plane.
-static inline void film_add_units3(const Film* film, uint plane, uint pixel, long3 units) {
+static inline void film_add_units3(Film* film, uint plane, uint pixel, long3 units) {
     global long* sum = film_pixel(film, plane, pixel);
     film_add_units(film, sum + 0, units.x);
     film_add_units(film, sum + 1, units.y);
     film_add_units(film, sum + 2, units.z);
 }
 
-static inline void film_add(const Film* film, uint plane, uint pixel, float3 value) {
+static inline void film_add(Film* film, uint plane, uint pixel, float3 value) {
     film_add_units3(film, plane, pixel, film_units3(film, value));
 }
 
@@ -77,7 +105,7 @@ static inline uint film_plane(uint term, uint route) {
 }
 
 /// Adds radiance to the beauty, and to the plane it belongs to if that is kept.
-static inline void film_add_radiance(const Film* film, uint term, uint route, uint pixel, float3 radiance) {
+static inline void film_add_radiance(Film* film, uint term, uint route, uint pixel, float3 radiance) {
     const long3 units = film_units3(film, radiance);
     film_add_units3(film, FILM_BEAUTY, pixel, units);
     const uint plane = film_plane(term, route);
@@ -85,7 +113,7 @@ static inline void film_add_radiance(const Film* film, uint term, uint route, ui
 }
 
 /// Adds the radiance of two terms. The beauty gets the sum of their integers, so that the planes still add up to it.
-static inline void film_add_two(const Film* film, uint route, uint pixel, uint first_term, float3 first,
+static inline void film_add_two(Film* film, uint route, uint pixel, uint first_term, float3 first,
                                 uint second_term, float3 second) {
     const long3 a = film_units3(film, first), b = film_units3(film, second);
     film_add_units3(film, FILM_BEAUTY, pixel, a + b);

@@ -95,11 +95,13 @@ static inline uint material_of(const World* world, uint primitive) {
     return index < sphere_count ? world->spheres[index].material : world->planes[index - sphere_count].material;
 }
 
-/// Whether the hit's material spawns rays at all; most do not, and need no more work.
-static inline bool may_spawn(const World* world, uint primitive) {
-    if (primitive == NO_INDEX) return false;
-    global const Material* material = world->materials + material_of(world, primitive);
+/// Whether the material spawns rays at all; most do not, and need no more work.
+static inline bool passes_light_on(global const Material* material) {
     return material->reflection + material->transmission > 0.0f;
+}
+
+static inline bool may_spawn(const World* world, uint primitive) {
+    return primitive != NO_INDEX && passes_light_on(world->materials + material_of(world, primitive));
 }
 
 /// Index of the object that a primitive belongs to.
