@@ -12,22 +12,25 @@ static inline float3 albedo(const Shading* s) {
     return s->diffuse * s->local_share + load3(s->material->base_color) * passed_on;
 }
 
-static inline void add_camera_hit(Film* film, const World* world, constant CameraRecord* camera, uint object,
+/// Returns how many adds were not of zero.
+static inline uint add_camera_hit(const Film* film, const World* world, constant CameraRecord* camera, uint object,
                                   const Shading* s) {
     const uint pixel = s->ray->pixel;
-    if (film_keeps(film, FILM_ALBEDO)) film_add(film, FILM_ALBEDO, pixel, albedo(s));
-    if (film_keeps(film, FILM_NORMAL)) film_add(film, FILM_NORMAL, pixel, s->surface.shading_normal);
+    uint adds = 0;
+    if (film_keeps(film, FILM_ALBEDO)) adds += film_add(film, FILM_ALBEDO, pixel, albedo(s));
+    if (film_keeps(film, FILM_NORMAL)) adds += film_add(film, FILM_NORMAL, pixel, s->surface.shading_normal);
     if (film_keeps(film, FILM_POSITION)) {
         const float3 p = s->surface.position;
         const float z = dot3(p - constant3(camera->eye), constant3(camera->forward));
-        film_add(film, FILM_POSITION, pixel, p);
-        film_add_units(film, film_pixel(film, FILM_POSITION, pixel) + 3, film_units(film, z));
+        adds += film_add(film, FILM_POSITION, pixel, p);
+        adds += film_add_units(film, film_pixel(film, FILM_POSITION, pixel) + 3, film_units(film, z));
     }
     if (film_keeps(film, FILM_IDS) && s->ray->sample == 0) {
         global long* ids = film_pixel(film, FILM_IDS, pixel);
         ids[0] = (long)object + 1;
         ids[1] = (long)s->surface.material + 1;
     }
+    return adds;
 }
 
 /// One work-item a chunk of CHUNK rays, all of depth `depth`.
@@ -37,23 +40,24 @@ kernel void features(global const Ray* rays, uint first_ray, uint count, uint de
                      global const float* texels, constant CameraRecord* camera, constant SceneConstants* constants,
                      global long* film_sums, global Counters* counters, uint film_flags) {
     const World world = {vertices, triangles, spheres, planes, materials, textures, texels, constants};
-    Film film = film_of(film_sums, counters, constants, film_flags);
+    const Film film = {film_sums, counters, constants, film_flags, ATOMICS_FEATURES};
     const uint begin = get_global_id(0) * CHUNK;
     const uint end = min(begin + CHUNK, count);
+    uint adds = 0, others = 0;
     for (uint i = begin; i < end; ++i) {
         global const Ray* ray = rays + first_ray + i;
         if (film_keeps(&film, FILM_IDS)) {
             global long* ids = film_pixel(&film, FILM_IDS, ray->pixel);
             atom_max(ids + 2, (long)depth);
-            ++film.atomics;
+            ++others;
             if (ray->route == ROUTE_CAMERA) {
                 atom_inc(ids + 3);
-                ++film.atomics;
+                ++others;
             }
         }
         if (ray->route != ROUTE_CAMERA || hits[i].primitive == NO_INDEX) continue;
         const Shading shading = shading_at(&world, ray, hits[i]);
-        add_camera_hit(&film, &world, camera, object_of(&world, hits[i].primitive), &shading);
+        adds += add_camera_hit(&film, &world, camera, object_of(&world, hits[i].primitive), &shading);
     }
-    film_count_atomics(&film, ATOMICS_FEATURES);
+    film_count_atomics(&film, adds, others);
 }

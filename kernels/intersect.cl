@@ -27,21 +27,22 @@ kernel void intersect(global const Ray* rays, uint first_ray, uint count, global
                       global const Plane* planes, global const Texture* textures, global const float* texels,
                       constant SceneConstants* constants, global Hit* hits, global long* film_sums,
                       global Counters* counters, uint film_flags) {
-    Film film = film_of(film_sums, counters, constants, film_flags);
+    const Film film = {film_sums, counters, constants, film_flags, ATOMICS_INTERSECT};
     const Geometry geometry = scene_geometry(nodes, triangle_blocks, sphere_blocks, planes, constants);
     const uint begin = get_global_id(0) * RAYS_A_WORK_ITEM;
     const uint end = min(begin + RAYS_A_WORK_ITEM, count);
     if (begin >= count) return;
     intersect_chunk(&geometry, rays + first_ray + begin, end - begin, hits + begin);
+    uint adds = 0;
     for (uint i = begin; i < end; ++i) {
         global const Ray* ray = rays + first_ray + i;
         if (hits[i].primitive != NO_INDEX) {
             if (ray->route == ROUTE_CAMERA)
-                film_add_units(&film, film_pixel(&film, FILM_BEAUTY, ray->pixel) + 3, FILM_ONE);
+                adds += film_add_units(&film, film_pixel(&film, FILM_BEAUTY, ray->pixel) + 3, FILM_ONE);
         } else {
             const float3 sky = environment_radiance(textures, texels, constants, load3(ray->direction));
-            film_add_radiance(&film, FILM_EMISSION, ray->route, ray->pixel, load3(ray->throughput) * sky);
+            adds += film_add_radiance(&film, FILM_EMISSION, ray->route, ray->pixel, load3(ray->throughput) * sky);
         }
     }
-    film_count_atomics(&film, ATOMICS_INTERSECT);
+    film_count_atomics(&film, adds, 0);
 }

@@ -19,7 +19,8 @@ static void find_blockers(const Geometry* geometry, global const ShadowRay* rays
 #else
 static void find_blockers(const Geometry* geometry, global const ShadowRay* rays, uint count, uint* blockers) {
     for (uint i = 0; i < count; ++i)
-        blockers[i] = any_hit_before(geometry, load3(rays[i].origin), load3(rays[i].direction), rays[i].t_max).primitive;
+        blockers[i] =
+            any_hit_before(geometry, load3(rays[i].origin), load3(rays[i].direction), rays[i].t_max).primitive;
 }
 #endif
 
@@ -51,7 +52,7 @@ kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shado
                    global const Triangle* triangles, global const Sphere* spheres, global const Material* materials,
                    constant SceneConstants* constants, global long* film_sums, global Counters* counters,
                    uint film_flags) {
-    Film film = film_of(film_sums, counters, constants, film_flags);
+    const Film film = {film_sums, counters, constants, film_flags, ATOMICS_SHADOW};
     const Geometry geometry = scene_geometry(nodes, triangle_blocks, sphere_blocks, planes, constants);
     const World world = {0, triangles, spheres, planes, materials, 0, 0, constants};
     const uint first = get_global_id(0) * RAYS_A_WORK_ITEM % CHUNK;
@@ -62,7 +63,7 @@ kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shado
     uint blockers[RAYS_A_WORK_ITEM];
     const bool all_clear = constants->shadows == SHADOWS_NONE;
     if (!all_clear) find_blockers(&geometry, rays, count, blockers);
-    uint blocked = 0;
+    uint blocked = 0, adds = 0;
     for (uint i = 0; i < count; ++i) {
         global const ShadowRay* ray = rays + i;
         float3 left = (float3)(1.0f);
@@ -72,17 +73,16 @@ kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shado
             if (any(left != 0.0f)) left = transmittance(&geometry, &world, ray);
         }
         if (ray->route == ROUTE_CAMERA && film_keeps(&film, FILM_SHADOW)) {
-            film_add(&film, FILM_SHADOW, ray->pixel, left);
-            film_add_units(&film, film_pixel(&film, FILM_SHADOW, ray->pixel) + 3, FILM_ONE);
+            adds += film_add(&film, FILM_SHADOW, ray->pixel, left);
+            adds += film_add_units(&film, film_pixel(&film, FILM_SHADOW, ray->pixel) + 3, FILM_ONE);
         }
         if (any(left != 0.0f)) {
-            film_add_two(&film, ray->route, ray->pixel, FILM_DIFFUSE, left * load3(ray->diffuse), FILM_SPECULAR,
-                         left * load3(ray->specular));
+            adds += film_add_two(&film, ray->route, ray->pixel, FILM_DIFFUSE, left * load3(ray->diffuse), FILM_SPECULAR,
+                                 left * load3(ray->specular));
         } else {
             ++blocked;
         }
     }
-    film_count(&film, &counters->shadow_traced, count);
-    film_count(&film, &counters->shadow_blocked, blocked);
-    film_count_atomics(&film, ATOMICS_SHADOW);
+    const uint pops = film_count(&counters->shadow_traced, count) + film_count(&counters->shadow_blocked, blocked);
+    film_count_atomics(&film, adds, pops);
 }
