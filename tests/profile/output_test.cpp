@@ -85,6 +85,18 @@ TEST(Trace, has_a_complete_event_for_every_launch_and_span) {
     EXPECT_EQ(device[1]["ts"], 1012.0);
     EXPECT_EQ(device[1]["dur"], 7.0);
     EXPECT_EQ(device[1]["args"]["items out"], 70);
+    EXPECT_EQ(device[1]["args"]["atomics"], 150);
+}
+
+TEST(Trace, names_its_process_and_tracks_and_leaves_the_unit_of_time_alone) {
+    std::ostringstream text;
+    write_trace(text, run_example());
+    const Json trace = Json::parse(text.str());
+    EXPECT_EQ(keys_of(trace), Keys{"traceEvents"}) << "Perfetto may take displayTimeUnit for the unit of the times";
+    std::vector<std::string> names;
+    for (const Json& event : trace["traceEvents"])
+        if (event["ph"] == "M") names.push_back(event["args"]["name"]);
+    EXPECT_EQ(names, (std::vector<std::string>{"raymill example.toml", "host", "an abacus"}));
 }
 
 TEST(Trace, follows_the_fill_of_every_queue_back_to_zero) {
