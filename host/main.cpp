@@ -35,7 +35,8 @@ int run(int argc, char** argv) {
         {"render", add_render_command(app)},   {"profile", add_profile_command(app)},
         {"check", add_check_command(app)},     {"devices", add_devices_command(app)},
         {"explain", add_explain_command(app)}, {"verify", add_verify_command(app)},
-        {"replay", add_replay_command(app)},   {"scene", add_scene_command(app)}};
+        {"replay", add_replay_command(app)},   {"scene", add_scene_command(app)},
+        {"compile", add_compile_command(app)}};
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& success) {

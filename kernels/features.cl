@@ -6,31 +6,47 @@
 #include "lib/film.h"
 #include "lib/shading.h"
 
-/// Colour that the surface gives to white light from everywhere: what denoisers call albedo.
-static inline float3 albedo(const Shading* s) {
-    const float passed_on = s->material->reflection + s->material->transmission;
-    return s->diffuse * s->local_share + load3(s->material->base_color) * passed_on;
+/// Colour that the surfaces give to white light from everywhere: what denoisers call albedo.
+static inline Lanes3 albedo(const World* world, const Shading* s) {
+    global const Material* first = world->materials;
+    const float16 reflection = material4(world, &s->surface, first->diffuse).w;
+    const float16 transmission = material4(world, &s->surface, first->specular).w;
+    const Lanes3 base_color = lanes_xyz(material4(world, &s->surface, first->base_color));
+    return lanes_add(lanes_scale(s->diffuse, s->local_share), lanes_scale(base_color, reflection + transmission));
 }
 
-/// Returns how many adds were not of zero.
-static inline uint add_camera_hit(const Film* film, const World* world, constant CameraRecord* camera, uint object,
-                                  const Shading* s) {
-    const uint pixel = s->ray->pixel;
-    uint adds = 0;
-    if (film_keeps(film, FILM_ALBEDO)) adds += film_add(film, FILM_ALBEDO, pixel, albedo(s));
-    if (film_keeps(film, FILM_NORMAL)) adds += film_add(film, FILM_NORMAL, pixel, s->surface.shading_normal);
+/// Adds one of these to each camera hit.
+static inline uint add_feature(const Film* film, uint plane, const Shading* s, Lanes3 value, float16 fourth) {
+    const Rows rows = rows_of(value, fourth);
+    uint atomics = 0;
+    for (uint lane = 0; lane < s->hits.count; ++lane)
+        atomics += film_add(film, plane, ((const uint*)&s->hits.pixel)[lane], row_of(&rows, lane));
+    return atomics;
+}
+
+/// Objects and materials are those of sample 0.
+static inline void set_ids(const Film* film, const World* world, const Shading* s) {
+    for (uint lane = 0; lane < s->hits.count; ++lane) {
+        if (((const uint*)&s->hits.sample)[lane] != 0) continue;
+        global long* ids = film_pixel(film, FILM_IDS, ((const uint*)&s->hits.pixel)[lane]);
+        ids[0] = (long)object_of(world, ((const uint*)&s->hits.primitive)[lane]) + 1;
+        ids[1] = (long)((const uint*)&s->surface.material)[lane] + 1;
+    }
+}
+
+static inline uint add_camera_hits(const Film* film, const World* world, constant CameraRecord* camera,
+                                   const Shading* s) {
+    const float16 nothing = (float16)(0.0f);
+    uint atomics = 0;
+    if (film_keeps(film, FILM_ALBEDO)) atomics += add_feature(film, FILM_ALBEDO, s, albedo(world, s), nothing);
+    if (film_keeps(film, FILM_NORMAL)) atomics += add_feature(film, FILM_NORMAL, s, s->surface.shading_normal, nothing);
     if (film_keeps(film, FILM_POSITION)) {
-        const float3 p = s->surface.position;
-        const float z = dot3(p - constant3(camera->eye), constant3(camera->forward));
-        adds += film_add(film, FILM_POSITION, pixel, p);
-        adds += film_add_units(film, film_pixel(film, FILM_POSITION, pixel) + 3, film_units(film, z));
+        const Lanes3 p = s->surface.position;
+        const Lanes3 from_eye = lanes_sub(p, lanes_of(constant3(camera->eye)));
+        atomics += add_feature(film, FILM_POSITION, s, p, lanes_dot(from_eye, lanes_of(constant3(camera->forward))));
     }
-    if (film_keeps(film, FILM_IDS) && s->ray->sample == 0) {
-        global long* ids = film_pixel(film, FILM_IDS, pixel);
-        ids[0] = (long)object + 1;
-        ids[1] = (long)s->surface.material + 1;
-    }
-    return adds;
+    if (film_keeps(film, FILM_IDS)) set_ids(film, world, s);
+    return atomics;
 }
 
 /// One work-item a chunk of CHUNK rays, all of depth `depth`.
@@ -43,21 +59,25 @@ kernel void features(global const Ray* rays, uint first_ray, uint count, uint de
     const Film film = {film_sums, counters, constants, film_flags, ATOMICS_FEATURES};
     const uint begin = get_global_id(0) * CHUNK;
     const uint end = min(begin + CHUNK, count);
-    uint adds = 0, others = 0;
+    uint places[CHUNK], found = 0, atomics = 0;
     for (uint i = begin; i < end; ++i) {
         global const Ray* ray = rays + first_ray + i;
         if (film_keeps(&film, FILM_IDS)) {
             global long* ids = film_pixel(&film, FILM_IDS, ray->pixel);
             atom_max(ids + 2, (long)depth);
-            ++others;
+            ++atomics;
             if (ray->route == ROUTE_CAMERA) {
                 atom_inc(ids + 3);
-                ++others;
+                ++atomics;
             }
         }
-        if (ray->route != ROUTE_CAMERA || hits[i].primitive == NO_INDEX) continue;
-        const Shading shading = shading_at(&world, ray, hits[i]);
-        adds += add_camera_hit(&film, &world, camera, object_of(&world, hits[i].primitive), &shading);
+        if (ray->route == ROUTE_CAMERA && hits[i].primitive != NO_INDEX) places[found++] = i;
     }
-    film_count_atomics(&film, adds, others);
+    for (uint first = 0; first < found; first += LANES) {
+        Shading shading;
+        shading.hits = gather_hits(rays + first_ray, hits, places + first, min((uint)LANES, found - first));
+        shade_hits(&world, &shading);
+        atomics += add_camera_hits(&film, &world, camera, &shading);
+    }
+    film_count_atomics(&film, atomics);
 }

@@ -4,15 +4,18 @@
 // Next:   intersect.
 
 #include "lib/camera.h"
+#include "lib/gather.h"
 
-static inline void write_ray(const CameraSamples* s, uint lane, float3 origin, float3 direction, global Ray* ray) {
-    store3(ray->origin, origin);
-    ray->pixel = s->pixel[lane];
-    store3(ray->direction, direction);
-    ray->sample = s->sample[lane];
-    store3(ray->throughput, (float3)(1.0f));
-    ray->path = s->path[lane];
-    ray->route = ROUTE_CAMERA;
+static inline void write_rays(const CameraSamples* s, Lanes3 from, Lanes3 along, uint count, global Ray* rays) {
+    const Rows origin = rows_of(from, as_float16(s->pixel));
+    const Rows direction = rows_of(along, as_float16(s->sample));
+    for (uint lane = 0; lane < count; ++lane) {
+        global Ray* ray = rays + lane;
+        store_row(ray->origin, row_of(&origin, lane));
+        store_row(ray->direction, row_of(&direction, lane));
+        store_row(ray->throughput, (float4)(1.0f, 1.0f, 1.0f, as_float(((const uint*)&s->path)[lane])));
+        ray->route = ROUTE_CAMERA;
+    }
 }
 
 /// One work-item a chunk of CHUNK rays: camera samples [first_sample, first_sample + count) in tile order.
@@ -26,10 +29,6 @@ kernel void generate(ulong first_sample, uint count, constant CameraRecord* came
         Lanes3 from, along;
         camera_samples(&cursor, camera, &samples);
         camera_rays(camera, &samples, &from, &along);
-        float origin[3][LANES], direction[3][LANES];
-        lanes_store(origin, from);
-        lanes_store(direction, along);
-        for (uint lane = 0; lane < min((uint)LANES, end - first); ++lane)
-            write_ray(&samples, lane, lane_get(origin, lane), lane_get(direction, lane), rays + first + lane);
+        write_rays(&samples, from, along, min((uint)LANES, end - first), rays + first);
     }
 }

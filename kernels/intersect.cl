@@ -1,11 +1,12 @@
 // The closest hit of every ray of a batch; rays that miss bring home the background.
 // Reads:  rays [first_ray, first_ray + count).
-// Writes: hits [0, count); film, where a ray misses.
+// Writes: hits [0, count); film, where a ray misses; counters->children, which `secondary` of the same wave counts from 0.
 // Next:   shade.
 
 #include "lib/environment.h"
 #include "lib/film.h"
 #include "lib/packet.h"
+#include "lib/surface.h"
 
 #ifdef RAYMILL_PACKETS
 static void intersect_chunk(const Geometry* geometry, global const Ray* rays, uint count, global Hit* hits) {
@@ -21,6 +22,17 @@ static void intersect_chunk(const Geometry* geometry, global const Ray* rays, ui
 }
 #endif
 
+/// What up to sixteen rays bring home that miss everything.
+static inline uint add_background(const Film* film, global const Texture* textures, global const float* texels,
+                                  const HitLanes* rays) {
+    const Lanes3 sky = environment_radiance(textures, texels, film->constants, rays->direction);
+    Terms terms = {.count = rays->count, .second = {{(float16)(0.0f)}}};
+    vstore16(rays->pixel, 0, terms.pixel);
+    vstore16(rays->route, 0, terms.route);
+    terms.first = rows_of(lanes_mul(rays->throughput, sky), (float16)(0.0f));
+    return film_add_terms(film, FILM_EMISSION, FILM_EMISSION, &terms);
+}
+
 /// One work-item a chunk of CHUNK rays, or one ray where rays are traced alone.
 kernel void intersect(global const Ray* rays, uint first_ray, uint count, global const BvhNode* nodes,
                       global const TriangleBlock* triangle_blocks, global const SphereBlock* sphere_blocks,
@@ -32,17 +44,20 @@ kernel void intersect(global const Ray* rays, uint first_ray, uint count, global
     const uint begin = get_global_id(0) * RAYS_A_WORK_ITEM;
     const uint end = min(begin + RAYS_A_WORK_ITEM, count);
     if (begin >= count) return;
+    if (begin == 0) counters->children = 0;
     intersect_chunk(&geometry, rays + first_ray + begin, end - begin, hits + begin);
-    uint adds = 0;
+    uint misses[RAYS_A_WORK_ITEM], missed = 0, atomics = 0;
     for (uint i = begin; i < end; ++i) {
         global const Ray* ray = rays + first_ray + i;
-        if (hits[i].primitive != NO_INDEX) {
-            if (ray->route == ROUTE_CAMERA)
-                adds += film_add_units(&film, film_pixel(&film, FILM_BEAUTY, ray->pixel) + 3, FILM_ONE);
-        } else {
-            const float3 sky = environment_radiance(textures, texels, constants, load3(ray->direction));
-            adds += film_add_radiance(&film, FILM_EMISSION, ray->route, ray->pixel, load3(ray->throughput) * sky);
-        }
+        if (hits[i].primitive == NO_INDEX)
+            misses[missed++] = i;
+        else if (ray->route == ROUTE_CAMERA)
+            atomics += film_add_units(&film, film_pixel(&film, FILM_BEAUTY, ray->pixel) + 3, FILM_ONE);
     }
-    film_count_atomics(&film, adds, 0);
+    for (uint first = 0; first < missed; first += LANES) {
+        const uint in_lanes = min((uint)LANES, missed - first);
+        const HitLanes lanes = gather_hits(rays + first_ray, hits, misses + first, in_lanes);
+        atomics += add_background(&film, textures, texels, &lanes);
+    }
+    film_count_atomics(&film, atomics);
 }

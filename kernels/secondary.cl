@@ -6,40 +6,53 @@
 #include "lib/material.h"
 #include "lib/random.h"
 
-/// Weight of a child, colours included; zero where it is cut.
-static inline float3 child_throughput(const World* world, global const Material* material, float3 throughput,
-                                      float share) {
-    const float3 weight = throughput * load3(material->base_color) * share;
-    return max3(weight) >= world->constants->min_weight ? weight : (float3)(0.0f);
-}
-
-/// The children of one hit, at most two.
+/// One branch of up to sixteen hits: the child of each lane in `mask`.
 typedef struct {
-    Surface surface;
-    Split split;
-    float3 reflected, refracted;  // throughputs; zero means no ray
-} Children;
+    uint mask;
+    Rows origin, direction, throughput;  // and pixel, sample, path
+    uint16 route;
+} ChildLanes;
 
-static inline uint children_of(const World* world, global const Ray* ray, Hit hit, Children* c) {
-    const float3 direction = load3(ray->direction);
-    c->surface = surface_at(world, load3(ray->origin), direction, hit);
-    global const Material* material = world->materials + c->surface.material;
-    c->split = split_ray(material, &c->surface, direction);
-    const float3 throughput = absorbed(material, &c->surface, load3(ray->throughput), hit.t);
-    c->reflected = child_throughput(world, material, throughput, c->split.reflection);
-    c->refracted = child_throughput(world, material, throughput, c->split.transmission);
-    return (any(c->reflected != 0.0f) ? 1u : 0u) + (any(c->refracted != 0.0f) ? 1u : 0u);
+/// share: of the light that the branch brings. side: -1 where the child leaves on the other side of the surface.
+static inline void spawn(const World* world, const HitLanes* hits, const SurfaceLanes* s, Lanes3 weight, float16 share,
+                         Lanes3 direction, float side, uint branch, ChildLanes* c) {
+    const Lanes3 throughput = lanes_scale(weight, share);
+    const int16 counts = lanes_max(throughput) >= world->constants->min_weight;
+    c->mask = lane_mask16(counts & lanes_any(throughput)) & ((1u << hits->count) - 1u);
+    if (c->mask == 0) return;
+    c->origin = rows_of(leave_surfaces(world, s, side), as_float16(hits->pixel));
+    c->direction = rows_of(direction, as_float16(hits->sample));
+    c->throughput = rows_of(throughput, as_float16(path_child(hits->path, branch)));
+    const uint16 first_branch = (uint16)(branch == 0 ? ROUTE_REFLECTED : ROUTE_REFRACTED);
+    c->route = select(hits->route, first_branch, hits->route == ROUTE_CAMERA);
 }
 
-static inline void write_child(const World* world, global const Ray* parent, const Surface* surface, float side,
-                               float3 direction, float3 throughput, uint branch, global Ray* child) {
-    store3(child->origin, leave_surface(world, surface, side));
-    store3(child->direction, direction);
-    store3(child->throughput, throughput);
-    child->pixel = parent->pixel;
-    child->sample = parent->sample;
-    child->path = path_child(parent->path, branch);
-    child->route = parent->route != ROUTE_CAMERA ? parent->route : branch == 0 ? ROUTE_REFLECTED : ROUTE_REFRACTED;
+/// The children of up to sixteen hits: reflected rays, and refracted ones.
+static inline void spawn_children(const World* world, const HitLanes* hits, ChildLanes* reflected,
+                                  ChildLanes* refracted) {
+    SurfaceLanes s;
+    surfaces_at(world, hits, &s);
+    const Split split = split_rays(world, &s, hits->direction);
+    const Lanes3 throughput = absorbed(world, &s, material_flags(world, &s), hits->throughput, hits->t);
+    const Lanes3 weight = lanes_mul(throughput, lanes_xyz(material4(world, &s, world->materials->base_color)));
+    spawn(world, hits, &s, weight, split.reflection, split.reflected, 1.0f, 0, reflected);
+    spawn(world, hits, &s, weight, split.transmission, split.refracted, -1.0f, 1, refracted);
+}
+
+/// Writes one branch's children, the first to `place`; returns the place behind them.
+static inline ulong write_children(const ChildLanes* branch, uint groups, global Ray* children, ulong place) {
+    for (uint group = 0; group < groups; ++group) {
+        const ChildLanes* c = branch + group;
+        for (uint rest = c->mask; rest != 0; rest &= rest - 1) {
+            const uint lane = lowest_bit(rest);
+            global Ray* child = children + place++;
+            store_row(child->origin, row_of(&c->origin, lane));
+            store_row(child->direction, row_of(&c->direction, lane));
+            store_row(child->throughput, row_of(&c->throughput, lane));
+            child->route = ((const uint*)&c->route)[lane];
+        }
+    }
+    return place;
 }
 
 /// One work-item a chunk of CHUNK hits: counts its children, takes their places with one atomic add, writes them.
@@ -51,13 +64,17 @@ kernel void secondary(global const Ray* rays, uint first_ray, uint count, global
     const World world = {vertices, triangles, spheres, planes, materials, textures, texels, constants};
     const uint begin = get_global_id(0) * CHUNK;
     const uint end = min(begin + CHUNK, count);
-    Children c;
-    uint spawned = 0, parents = 0;
-    for (uint i = begin; i < end; ++i) {
-        if (!may_spawn(&world, hits[i].primitive)) continue;
-        const uint found = children_of(&world, rays + first_ray + i, hits[i], &c);
-        spawned += found;
-        parents += found != 0;
+    uint places[CHUNK], found = 0;
+    for (uint i = begin; i < end; ++i)
+        if (may_spawn(&world, hits[i].primitive)) places[found++] = i;
+
+    ChildLanes reflected[CHUNK / LANES], refracted[CHUNK / LANES];
+    uint spawned = 0, parents = 0, groups = 0;
+    for (uint first = 0; first < found; first += LANES, ++groups) {
+        const HitLanes lanes = gather_hits(rays + first_ray, hits, places + first, min((uint)LANES, found - first));
+        spawn_children(&world, &lanes, reflected + groups, refracted + groups);
+        spawned += popcount(reflected[groups].mask) + popcount(refracted[groups].mask);
+        parents += popcount(reflected[groups].mask | refracted[groups].mask);
     }
     if (spawned == 0) return;
 
@@ -67,12 +84,7 @@ kernel void secondary(global const Ray* rays, uint first_ray, uint count, global
     }
     ulong place = atom_add(&counters->children, (ulong)spawned);
     if (place + spawned > capacity) return;  // the host sees the count and stops
-    for (uint i = begin; i < end; ++i) {
-        global const Ray* ray = rays + first_ray + i;
-        if (!may_spawn(&world, hits[i].primitive) || children_of(&world, ray, hits[i], &c) == 0) continue;
-        if (any(c.reflected != 0.0f))
-            write_child(&world, ray, &c.surface, 1.0f, c.split.reflected, c.reflected, 0, children + place++);
-        if (any(c.refracted != 0.0f))
-            write_child(&world, ray, &c.surface, -1.0f, c.split.refracted, c.refracted, 1, children + place++);
-    }
+    // The reflected ones first: a chunk of the next level then has more rays that go the same way.
+    place = write_children(reflected, groups, children, place);
+    write_children(refracted, groups, children, place);
 }

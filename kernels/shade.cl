@@ -8,6 +8,17 @@
 #include "lib/film.h"
 #include "lib/lighting.h"
 
+/// Ambient light and emission.
+static inline uint add_local_light(const Film* film, const World* world, const Shading* s) {
+    Terms terms;
+    terms.count = s->hits.count;
+    vstore16(s->hits.pixel, 0, terms.pixel);
+    vstore16(s->hits.route, 0, terms.route);
+    terms.first = rows_of(ambient_radiance(world, s), (float16)(0.0f));
+    terms.second = rows_of(emitted_radiance(world, s), (float16)(0.0f));
+    return film_add_terms(film, FILM_AMBIENT, FILM_EMISSION, &terms);
+}
+
 /// One work-item a chunk of CHUNK hits; segment = chunk * slot_count + slot.
 kernel void shade(global const Ray* rays, uint first_ray, uint count, global const Hit* hits, uint first_slot,
                   uint slot_count, global const LightSlot* slots, global const LightRecord* lights,
@@ -21,30 +32,24 @@ kernel void shade(global const Ray* rays, uint first_ray, uint count, global con
     const uint begin = chunk * CHUNK;
     if (begin >= count) return;
     const uint end = min(begin + CHUNK, count);
-    HitLanes lanes = {.count = 0};
-    uint pushed[SHADOW_SAMPLES] = {0};
-    uint found = 0, passing = 0, adds = 0;
-
+    uint places[CHUNK], found = 0;
     for (uint i = begin; i < end; ++i) {
-        if (hits[i].primitive != NO_INDEX) {
-            global const Ray* ray = rays + first_ray + i;
-            const Shading shading = shading_at(&world, ray, hits[i]);
-            if (first_slot == 0) {
-                adds += film_add_two(&film, ray->route, ray->pixel, FILM_AMBIENT, ambient_radiance(&world, &shading),
-                                        FILM_EMISSION, emitted_radiance(&shading));
-                ++found;
-                passing += passes_light_on(shading.material) ? 1u : 0u;
-            }
-            if (answers_light(&shading)) put_hit(&lanes, &world, &shading);
-        }
-        if (lanes.count < LANES && (i + 1 < end || lanes.count == 0)) continue;
+        places[found] = i;
+        found += hits[i].primitive != NO_INDEX;
+    }
+    uint pushed[SHADOW_SAMPLES] = {0}, atomics = 0;
+    for (uint first = 0; first < found; first += LANES) {
+        Shading shading;
+        shading.hits = gather_hits(rays + first_ray, hits, places + first, min((uint)LANES, found - first));
+        shade_hits(&world, &shading);
+        if (first_slot == 0) atomics += add_local_light(&film, &world, &shading);
+        if (!answers_light(&shading)) continue;
+        const Lanes3 start = shadow_start(&world, &shading.surface);
         for (uint k = 0; k < slot_count; ++k) {
             const LightSlot slot = slots[first_slot + k];
             global ShadowRay* segment = shadow_rays + (chunk * slot_count + k) * CHUNK;
-            pushed[k] += push_shadow_rays(&lanes, constants, lights + slot.light, slot, segment + pushed[k]);
+            pushed[k] += push_shadow_rays(&shading, start, constants, lights + slot.light, slot, segment + pushed[k]);
         }
-        lanes.count = 0;
-        lanes.any_blinn = lanes.any_gouraud = false;
     }
 
     uint total = 0;
@@ -52,10 +57,12 @@ kernel void shade(global const Ray* rays, uint first_ray, uint count, global con
         shadow_counts[chunk * slot_count + k] = pushed[k];
         total += pushed[k];
     }
-    const uint pushes = film_count(&counters->shadow_rays, total);
-    if (first_slot == 0) {
+    atomics += film_count(&counters->shadow_rays, total);
+    if (first_slot == 0 && (film_flags & FILM_COUNTED)) {
+        uint passing = 0;
+        for (uint i = 0; i < found; ++i) passing += may_spawn(&world, hits[places[i]].primitive) ? 1 : 0;
         film_profile(&film, &counters->missed, end - begin - found);
         film_profile(&film, &counters->passing, passing);
     }
-    film_count_atomics(&film, adds, pushes);
+    film_count_atomics(&film, atomics);
 }

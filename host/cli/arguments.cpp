@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <map>
+
+#include "common/child_process.hpp"
 
 namespace raymill {
 
@@ -27,6 +30,28 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
         if (end == std::string_view::npos) return parts;
         text.remove_prefix(end + 1);
     }
+}
+
+const std::map<std::string, Traversal>& traversals() {
+    static const std::map<std::string, Traversal> names = {
+        {"auto", Traversal::automatic}, {"packet", Traversal::packet}, {"single", Traversal::single}};
+    return names;
+}
+
+/// Another process of this program that compiles kernels for what `arguments` choose; empty if there can be none.
+std::vector<std::string> helper_command(const DeviceArguments& arguments) {
+    const std::string program = this_program();
+    if (program.empty()) return {};
+    std::vector<std::string> command = {program, "compile"};
+    const auto add = [&](const char* flag, const std::string& value) { command.insert(command.end(), {flag, value}); };
+    for (const profile::Stage stage : compile_helper_stages) add("--stages", std::string(profile::stage_name(stage)));
+    if (!arguments.device.empty()) add("--device", arguments.device);
+    if (!arguments.kernel_dir.empty()) add("--kernel-dir", arguments.kernel_dir);
+    if (arguments.threads > 0) add("--threads", std::to_string(arguments.threads));
+    if (arguments.work_group > 0) add("--work-group", std::to_string(arguments.work_group));
+    for (const auto& [name, traversal] : traversals())
+        if (traversal == arguments.traversal) add("--traversal", name);
+    return command;
 }
 
 }  // namespace
@@ -170,13 +195,11 @@ void DeviceArguments::add_fixed_to(CLI::App& command) {
 void DeviceArguments::add_what_never_varies_to(CLI::App& command) {
     command.add_option("--device", device, "Device by index or part of its name; `raymill devices` lists them")
         ->type_name("INDEX|NAME");
-    static const std::map<std::string, Traversal> traversals = {
-        {"auto", Traversal::automatic}, {"packet", Traversal::packet}, {"single", Traversal::single}};
     command
         .add_option("--traversal", traversal,
                     "auto, packet (coherent rays together) or single; the image does not depend on it")
         ->type_name("NAME")
-        ->transform(CLI::CheckedTransformer(traversals).description(""));
+        ->transform(CLI::CheckedTransformer(traversals()).description(""));
     static const std::map<std::string, BvhQuality> qualities = {{"fast", BvhQuality::fast}, {"high", BvhQuality::high}};
     command
         .add_option("--bvh", bvh,
@@ -194,6 +217,7 @@ RenderOptions DeviceArguments::options() const {
     options.work_group = work_group;
     options.traversal = traversal;
     options.kernel_dir = kernel_dir;
+    options.compile_helper = helper_command(*this);
     return options;
 }
 

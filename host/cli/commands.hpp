@@ -12,6 +12,7 @@ using Command = std::function<int()>;
 Command add_render_command(CLI::App& app);
 Command add_profile_command(CLI::App& app);
 Command add_check_command(CLI::App& app);
+Command add_compile_command(CLI::App& app);
 Command add_devices_command(CLI::App& app);
 Command add_explain_command(CLI::App& app);
 Command add_verify_command(CLI::App& app);

@@ -3,7 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <functional>
 
+#include "common/child_process.hpp"
+#include "device/kernel_cache.hpp"
 #include "wavefront/records.hpp"
 
 namespace raymill {
@@ -53,6 +57,7 @@ Renderer::Renderer(const Device& device, const Scene& scene, const Bvh& bvh, con
       waves_(plan_.queue_capacity, max_depth_),
       slot_ranges_(make_slot_ranges(static_cast<uint>(device_scene_.light_slots.size()))) {
     timeline_.measure("allocate queues", [&] { allocate_queues(); });
+    timeline_.measure("compile kernels", [&] { compile_kernels(options); });
 }
 
 void Renderer::allocate_queues() try {
@@ -65,6 +70,48 @@ void Renderer::allocate_queues() try {
     device_.queue.finish();
 } catch (const cl::Error& error) {
     throw DeviceError(error);
+}
+
+/// Each kernel is launched on nothing: PoCL compiles it then, if its cache on disk lacks it, and in one process only
+/// one at a time. So if the first was missing, a second process compiles some of the others at the same time.
+void Renderer::compile_kernels(const RenderOptions& options) try {
+    const auto began = std::filesystem::file_time_type::clock::now();
+    const auto is_helped = [](profile::Stage stage) {
+        return std::ranges::find(compile_helper_stages, stage) != compile_helper_stages.end();
+    };
+    std::vector<profile::Stage> stages = options.compile;
+    const auto helped = std::ranges::stable_partition(stages, std::not_fn(is_helped)).begin();
+    std::optional<ChildProcess> helper;
+    stages_.run_empty_launches(true);
+    for (auto stage = stages.begin(); stage != stages.end(); ++stage) {
+        if (stage == helped) helper.reset();  // waits
+        compile(*stage);
+        device_.queue.finish();
+        if (stage != stages.begin() || options.compile_helper.empty()) continue;
+        if (std::ranges::any_of(loaded_kernels(began), &LoadedKernel::built)) helper.emplace(options.compile_helper);
+    }
+    stages_.run_empty_launches(false);
+} catch (const cl::Error& error) {
+    throw DeviceError(error);
+}
+
+void Renderer::compile(profile::Stage stage) {
+    const QueueRange<Ray> no_rays{queues_[0]};
+    switch (stage) {
+        case profile::Stage::generate:
+            return stages_.generate(device_scene_, 0, 0, queues_[0]);
+        case profile::Stage::intersect:
+            return stages_.intersect(device_scene_, no_rays, hits_, film_);
+        case profile::Stage::shade:
+            return stages_.shade(device_scene_, no_rays, hits_, {}, shadow_queue_, film_);
+        case profile::Stage::shadow:
+            return stages_.shadow(device_scene_, shadow_queue_, 0, film_);
+        case profile::Stage::secondary:
+            if (max_depth_ > 0) stages_.secondary(device_scene_, no_rays, hits_, queues_[1], film_);
+            return;
+        default:
+            return;  // quickly compiled: when a frame needs them
+    }
 }
 
 Frame Renderer::render(const Progress& progress, profile::Detail detail) try {
@@ -176,8 +223,6 @@ void Renderer::trace(const Batch& batch) {
     const bool goes_deeper = batch.depth < max_depth_;
     if (goes_deeper) {
         Buffer<Ray>& children = queues_[static_cast<std::size_t>(batch.depth) + 1];
-        device_.queue.enqueueFillBuffer(film_.counters.memory(), cl_ulong{0}, offsetof(Counters, children),
-                                        sizeof(cl_ulong));
         stages_.secondary(device_scene_, rays, hits_, children, film_);
     }
     if (!goes_deeper && !profiler_) {

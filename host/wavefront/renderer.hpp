@@ -1,6 +1,7 @@
 // The wavefront loop: camera samples in, integer film out.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <functional>
@@ -24,7 +25,15 @@ struct RenderOptions {
     std::size_t work_group = 0;  // items; 0: what suits each stage
     Traversal traversal = Traversal::automatic;
     std::string kernel_dir;  // empty: the embedded kernels
+    // Stages whose kernels are to be compiled before the first frame; the others' are when they are first launched.
+    std::vector<profile::Stage> compile = {profile::Stage::generate, profile::Stage::intersect, profile::Stage::shade,
+                                           profile::Stage::shadow, profile::Stage::secondary};
+    // A command that compiles the kernels of compile_helper_stages into the runtime's cache; empty: none.
+    std::vector<std::string> compile_helper;
 };
+
+/// What is left to the helper: about half of the work, and not what is compiled first.
+inline constexpr std::array compile_helper_stages = {profile::Stage::shade, profile::Stage::secondary};
 
 struct RayCounts {
     std::uint64_t camera = 0;
@@ -85,7 +94,7 @@ class Renderer {
     const DeviceScene& device_scene() const { return device_scene_; }
     Stages& stages() { return stages_; }
 
-    /// What the constructor did: building the kernels, uploading the scene, allocating the queues.
+    /// What the constructor did: building the kernels, uploading the scene, allocating the queues, compiling.
     const std::vector<profile::Span>& setup() const { return timeline_.spans(); }
 
     /// Renders one frame. detail: what Frame::profile tells. Throws DeviceError, QueueOverflow, QueueMismatch.
@@ -93,6 +102,8 @@ class Renderer {
 
   private:
     void allocate_queues();
+    void compile_kernels(const RenderOptions& options);
+    void compile(profile::Stage stage);
     void make_ready();
     void start(profile::Detail detail);
     void trace_all(const Progress& progress);

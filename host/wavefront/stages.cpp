@@ -2,13 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "device/program.hpp"
 
 namespace raymill {
 
 namespace {
 
-const std::vector<std::string> kernel_files = {"generate.cl", "intersect.cl", "shade.cl",  "features.cl",
+const std::vector<std::string> kernel_files = {"generate.cl", "intersect.cl", "shade.cl",
                                                "shadow.cl",   "secondary.cl", "resolve.cl"};
 
 // Kernels of one item a work-item want groups that fill the vector units; those that loop over a chunk want none
@@ -56,39 +58,51 @@ std::uint64_t atomics_of(const Counters& counters, profile::Stage stage) {
 }
 
 Stages::Stages(const Device& device, std::size_t work_group, const std::string& kernel_dir, Traversal traversal)
-    : device_(device) {
+    : device_(device),
+      work_group_(work_group),
+      kernel_dir_(kernel_dir),
+      packets_(traversal == Traversal::packet || (traversal == Traversal::automatic && device.info.type == "CPU")) {
     if (work_group > device.info.largest_work_group)
         throw DeviceError(fmt::format("device {} has work-groups of at most {} items, not {}: lower --work-group",
                                       device.info.name, device.info.largest_work_group, work_group));
-    const bool packets =
-        traversal == Traversal::packet || (traversal == Traversal::automatic && device.info.type == "CPU");
-    const cl::Program program = build_program(device, kernel_files, kernel_dir, packets ? "-DRAYMILL_PACKETS" : "");
-    const auto stage = [&](profile::Stage name, std::size_t group, uint items) {
+    const cl::Program program = build(kernel_files);
+    const auto item_stage = [&](profile::Stage name, std::size_t group) {
         return Stage{name, make_kernel(program, profile::stage_name(name).data()), work_group > 0 ? work_group : group,
-                     items};
+                     1};
     };
-    const auto item_stage = [&](profile::Stage name) { return stage(name, item_group, 1); };
-    const auto chunk_stage = [&](profile::Stage name) { return stage(name, chunk_group, CHUNK); };
     // One ray a work-item, on processors still without company: their stacks are replicated like those of chunks.
     const auto ray_stage = [&](profile::Stage name) {
-        return packets ? chunk_stage(name) : stage(name, device.info.type == "CPU" ? chunk_group : item_group, 1);
+        return packets_ ? chunk_stage(program, name)
+                        : item_stage(name, device.info.type == "CPU" ? chunk_group : item_group);
     };
-    generate_ = chunk_stage(profile::Stage::generate);
+    generate_ = chunk_stage(program, profile::Stage::generate);
     intersect_ = ray_stage(profile::Stage::intersect);
-    shade_ = chunk_stage(profile::Stage::shade);
-    features_ = chunk_stage(profile::Stage::features);
+    shade_ = chunk_stage(program, profile::Stage::shade);
     shadow_ = ray_stage(profile::Stage::shadow);
-    secondary_ = chunk_stage(profile::Stage::secondary);
-    resolve_ = item_stage(profile::Stage::resolve);
+    secondary_ = chunk_stage(program, profile::Stage::secondary);
+    resolve_ = item_stage(profile::Stage::resolve, item_group);
+}
+
+cl::Program Stages::build(const std::vector<std::string>& files) const {
+    return build_program(device_, files, kernel_dir_, packets_ ? "-DRAYMILL_PACKETS" : "");
+}
+
+Stages::Stage Stages::chunk_stage(const cl::Program& program, profile::Stage name) const {
+    return {name, make_kernel(program, profile::stage_name(name).data()), work_group_ > 0 ? work_group_ : chunk_group,
+            CHUNK};
+}
+
+void Stages::build_features() {
+    if (!features_) features_ = chunk_stage(build({"features.cl"}), profile::Stage::features);
 }
 
 template <class... Arguments>
 void Stages::launch(Stage& stage, const Work& work, const Arguments&... arguments) {
-    if (work.work_items == 0) return;
+    if (work.work_items == 0 && !runs_empty_launches_) return;
     try {
         cl_uint index = 0;
         (stage.kernel.setArg(index++, argument(arguments)), ...);
-        const std::size_t groups = (work.work_items + stage.local_size - 1) / stage.local_size;
+        const std::size_t groups = (std::max(work.work_items, 1u) + stage.local_size - 1) / stage.local_size;
         cl::Event event;
         device_.queue.enqueueNDRangeKernel(stage.kernel, cl::NullRange, cl::NDRange(groups * stage.local_size),
                                            cl::NDRange(stage.local_size), nullptr, observer_ ? &event : nullptr);
@@ -121,9 +135,10 @@ void Stages::shade(const DeviceScene& scene, QueueRange<Ray> rays, const Buffer<
 }
 
 void Stages::features(const DeviceScene& scene, QueueRange<Ray> rays, uint depth, const Buffer<Hit>& hits, Film& film) {
-    launch(features_, {chunks(rays.count), rays.count}, rays.items, rays.first, rays.count, depth, hits, scene.vertices,
-           scene.triangles, scene.spheres, scene.planes, scene.materials, scene.textures, scene.texels, scene.camera,
-           scene.constants, film.sums, film.counters, film_flags(film));
+    build_features();
+    launch(*features_, {chunks(rays.count), rays.count}, rays.items, rays.first, rays.count, depth, hits,
+           scene.vertices, scene.triangles, scene.spheres, scene.planes, scene.materials, scene.textures, scene.texels,
+           scene.camera, scene.constants, film.sums, film.counters, film_flags(film));
 }
 
 void Stages::shadow(const DeviceScene& scene, const ShadowQueue& shadow_rays, uint segments, Film& film) {

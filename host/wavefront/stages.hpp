@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "profile/profile.hpp"
@@ -76,6 +77,10 @@ class Stages {
 
     void observe(LaunchObserver observer) { observer_ = std::move(observer); }
 
+    /// While on, a launch of no items runs one work-item, which finds nothing to do: runtimes compile a kernel when it
+    /// is launched for the first time.
+    void run_empty_launches(bool on) { runs_empty_launches_ = on; }
+
     void generate(const DeviceScene& scene, std::uint64_t first_sample, uint count, Buffer<Ray>& rays);
     void intersect(const DeviceScene& scene, QueueRange<Ray> rays, Buffer<Hit>& hits, Film& film);
     void shade(const DeviceScene& scene, QueueRange<Ray> rays, const Buffer<Hit>& hits, SlotRange slots,
@@ -103,12 +108,20 @@ class Stages {
         uint items = 0;
         uint segments = 0;
     };
+    cl::Program build(const std::vector<std::string>& files) const;
+    Stage chunk_stage(const cl::Program& program, profile::Stage name) const;
+    void build_features();
     template <class... Arguments>
     void launch(Stage& stage, const Work& work, const Arguments&... arguments);
 
     const Device& device_;
+    std::size_t work_group_;
+    std::string kernel_dir_;
+    bool packets_;
     LaunchObserver observer_;
-    Stage generate_, intersect_, shade_, features_, shadow_, secondary_, resolve_;
+    bool runs_empty_launches_ = false;
+    Stage generate_, intersect_, shade_, shadow_, secondary_, resolve_;
+    std::optional<Stage> features_;  // most frames do not need it: built when first launched
 };
 
 }  // namespace raymill

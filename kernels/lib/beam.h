@@ -29,29 +29,28 @@ typedef struct {
     bool is_pinhole;  // all rays start at one point: beams tell as much as rays
 } Packet;
 
+// Halves of vectors are taken through pointers: Oclgrind 21.10 reads beyond its record of what was written for v.hi and
+// (float16)(v, v).
+
+/// The smallest and the largest lane.
 static inline float min_lane(float16 v) {
-    const float8 v8 = min8(v.lo, v.hi);
-    const float4 v4 = select(v8.hi, v8.lo, v8.lo < v8.hi);
-    const float2 v2 = select(v4.hi, v4.lo, v4.lo < v4.hi);
+    const float8* half16 = (const float8*)&v;
+    const float8 v8 = min8(half16[0], half16[1]);
+    const float4* half8 = (const float4*)&v8;
+    const float4 v4 = select(half8[1], half8[0], half8[0] < half8[1]);
+    const float2* half4 = (const float2*)&v4;
+    const float2 v2 = select(half4[1], half4[0], half4[0] < half4[1]);
     return v2.x < v2.y ? v2.x : v2.y;
 }
 
-static inline float max_lane(float16 v) {
-    const float8 v8 = max8(v.lo, v.hi);
-    const float4 v4 = select(v8.hi, v8.lo, v8.lo > v8.hi);
-    const float2 v2 = select(v4.hi, v4.lo, v4.lo > v4.hi);
-    return v2.x > v2.y ? v2.x : v2.y;
-}
+static inline float max_lane(float16 v) { return -min_lane(-v); }
 
-static inline float16 twice(float8 v) { return (float16)(v, v); }
-
-static inline uint lane_mask16(int16 comparison) {
-    return lane_mask(comparison.lo) | lane_mask(comparison.hi) << 8;
-}
-
-static inline bool any16(int16 comparison) {
-    const ulong2 bytes = as_ulong2(convert_char16(comparison));
-    return (bytes.x | bytes.y) != 0;
+static inline float16 twice(float8 v) {
+    float16 pair;
+    float8* half16 = (float8*)&pair;
+    half16[0] = v;
+    half16[1] = v;
+    return pair;
 }
 
 static inline void set_group(float16* pairs, uint group, float value) {
@@ -85,18 +84,25 @@ static inline void prepare_depth(Packet* p, uint group) {
 
 /// Widened by more than what the tests of single rays may be off: a few roundings of the origins, the waist and what lies
 /// between for the bound, of the depth for the slope (slopes are at most 1).
-static inline void prepare_beam(Packet* p, uint group) {
-    const float16 to_waist = p->waist - p->rays.origin[p->axis[2]][group];
-    for (uint a = 0; a < 2; ++a) {
-        const float16 origin = p->rays.origin[p->axis[a]][group], slope = p->rays.shear[a][group];
-        const float16 place = fma(slope, to_waist, origin);
-        const float slack = 32.0f * ROUNDING * (max_lane(fabs(origin) + fabs(to_waist)) + fabs(p->waist));
-        const float rising = max_lane(slope * p->side) + 32.0f * ROUNDING;
-        const float falling = min_lane(slope * p->side) - 32.0f * ROUNDING;
-        set_group(p->slope[0][a], group, -falling);
-        set_group(p->slope[1][a], group, rising);
-        set_group(p->bound[0][a], group, slack - min_lane(place));
-        set_group(p->bound[1][a], group, slack + max_lane(place));
+static inline void prepare_beams(Packet* p) {
+    float16 size = (float16)(0.0f);
+    for (uint group = 0; group < GROUPS; ++group) {
+        const float16 to_waist = fabs(p->waist - p->rays.origin[p->axis[2]][group]);
+        size = max16(to_waist + fabs(p->rays.origin[p->axis[0]][group]), size);
+        size = max16(to_waist + fabs(p->rays.origin[p->axis[1]][group]), size);
+    }
+    const float slack = 32.0f * ROUNDING * (max_lane(size) + fabs(p->waist));
+    for (uint group = 0; group < GROUPS; ++group) {
+        const float16 to_waist = p->waist - p->rays.origin[p->axis[2]][group];
+        for (uint a = 0; a < 2; ++a) {
+            const float16 slope = p->rays.shear[a][group];
+            const float16 place = fma(slope, to_waist, p->rays.origin[p->axis[a]][group]);
+            const float16 rising = slope * p->side;
+            set_group(p->slope[0][a], group, 32.0f * ROUNDING - min_lane(rising));
+            set_group(p->slope[1][a], group, 32.0f * ROUNDING + max_lane(rising));
+            set_group(p->bound[0][a], group, slack - min_lane(place));
+            set_group(p->bound[1][a], group, slack + max_lane(place));
+        }
     }
 }
 
@@ -134,6 +140,9 @@ static inline void find_waist(Packet* p) {
     const RayChunk* c = &p->rays;
     const uint z = p->axis[2];
     const float travel = p->sign[z] ? -1.0f : 1.0f;
+    p->waist = c->origin[z][0].s0;
+    p->side = travel;
+    if (p->is_pinhole) return;
     float16 start16 = (float16)(INFINITY), end16 = (float16)(-INFINITY);
     for (uint group = 0; group < GROUPS; ++group) {
         const float16 start = c->origin[z][group] * travel;
@@ -142,9 +151,7 @@ static inline void find_waist(Packet* p) {
     }
     const float start = min_lane(start16), end = max_lane(end16);
     p->waist = start * travel;
-    p->side = travel;
     float width = width_at(p, p->waist);
-    if (width == 0.0f) return;
     if (end < INFINITY) {
         const float width_at_end = width_at(p, end * travel);
         if (width_at_end < width) {
@@ -162,6 +169,14 @@ static inline void find_waist(Packet* p) {
     }
 }
 
+/// Whether all rays start at one point.
+static inline bool have_one_origin(const RayChunk* c) {
+    int16 other = (int16)(0);
+    for (uint axis = 0; axis < 3; ++axis)
+        for (uint group = 0; group < GROUPS; ++group) other |= c->origin[axis][group] != c->origin[axis][0].s0;
+    return !any16(other);
+}
+
 /// Makes a packet of its coherent rays.
 static inline void packet_prepare(Packet* p) {
     const uint octant = p->rays.octant[0].s0;
@@ -170,12 +185,10 @@ static inline void packet_prepare(Packet* p) {
     p->axis[0] = frame.x;
     p->axis[1] = frame.y;
     p->axis[2] = frame.z;
+    p->is_pinhole = have_one_origin(&p->rays);
     find_waist(p);
-    p->is_pinhole = width_at(p, p->waist) == 0.0f && p->waist == p->rays.origin[frame.z][0].s0;
-    for (uint group = 0; group < GROUPS; ++group) {
-        prepare_depth(p, group);
-        prepare_beam(p, group);
-    }
+    for (uint group = 0; group < GROUPS; ++group) prepare_depth(p, group);
+    prepare_beams(p);
     update_farthest(p);
 }
 
@@ -191,7 +204,7 @@ static inline uint groups_meeting_children(const Packet* p, global const BvhNode
     const float16 lower_y = twice(aligned8(node->bounds[0][p->axis[1]]));
     const float16 upper_y = twice(aligned8(node->bounds[1][p->axis[1]]));
     uint mask = 0;
-    *entry = (float8)(INFINITY);
+    float16 soonest = (float16)(INFINITY);
 #pragma unroll
     for (uint pair = 0; pair < PAIRS; ++pair) {
         const float16 k0 = p->bound[0][0][pair] + upper_x, k1 = p->bound[0][1][pair] + upper_y;
@@ -207,8 +220,10 @@ static inline uint groups_meeting_children(const Packet* p, global const BvhNode
         const float16 leave = fma(leave_z, p->leave_scale[pair], p->leave_offset[pair]);
         const int16 meets = (min16(inside, leave) >= 0.0f) & (enter <= p->farthest[pair]);
         mask |= lane_mask16(meets) << (2 * BVH_WIDTH * pair);
-        *entry = min8(min8(enter.lo, enter.hi), *entry);
+        soonest = min16(enter, soonest);
     }
+    const float8* of_pair = (const float8*)&soonest;
+    *entry = min8(of_pair[0], of_pair[1]);
     return mask;
 }
 
@@ -238,8 +253,8 @@ static inline uint groups_meeting_triangles(const Packet* p, global const Triang
     return mask;
 }
 
-/// Whether a ray of the group meets child `lane`.
-static inline bool group_meets(const Packet* p, global const BvhNode* node, uint lane, uint group) {
+/// Which rays of the group meet child `lane`.
+static inline uint rays_meeting(const Packet* p, global const BvhNode* node, uint lane, uint group) {
     float16 enter = (float16)(0.0f), leave = p->rays.best_t[group];
 #pragma unroll
     for (uint axis = 0; axis < 3; ++axis) {
@@ -248,7 +263,7 @@ static inline bool group_meets(const Packet* p, global const BvhNode* node, uint
         enter = max16(fma((float16)(near), inverse, p->rays.near[axis][group]), enter);
         leave = min16(fma((float16)(far), inverse, p->rays.far[axis][group]), leave);
     }
-    return any16(enter <= leave * (1.0f + 8.0f * ROUNDING));
+    return lane_mask16(enter <= leave * (1.0f + 8.0f * ROUNDING));
 }
 
 /// One bit a group in the lowest four, spread to all boxes of such a mask; and the groups that meet one box.

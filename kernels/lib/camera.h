@@ -52,30 +52,55 @@ static inline void camera_step(CameraCursor* c, constant CameraRecord* camera) {
 
 /// Sixteen camera samples.
 typedef struct {
-    uint x[LANES], y[LANES];  // in the whole image, from the top left
-    uint pixel[LANES];        // in the rendered window
-    uint sample[LANES];
-    uint path[LANES];
+    uint16 x, y;   // in the whole image, from the top left
+    uint16 pixel;  // in the rendered window
+    uint16 sample;
+    uint16 path;
 } CameraSamples;
 
 /// Bits 0, 2 and 4: the column of a place in Z-order.
-static inline uint every_other_bit(uint place) { return (place & 1u) | (place >> 1 & 2u) | (place >> 2 & 4u); }
+static inline uint16 every_other_bit(uint16 place) { return (place & 1u) | (place >> 1 & 2u) | (place >> 2 & 4u); }
+
+/// Takes the next samples, which lie in one whole tile.
+static inline void samples_of_tile(CameraCursor* cursor, constant CameraRecord* camera, CameraSamples* s) {
+    const uint first = cursor->row * TILE + cursor->column;
+    const uint16 place = first + (uint16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    s->x = cursor->tile_x + every_other_bit(place);
+    s->y = cursor->tile_y + every_other_bit(place >> 1);
+    s->sample = (uint16)(cursor->sample);
+    const uint last = first + LANES - 1;
+    cursor->row = last / TILE;
+    cursor->column = last % TILE;
+    camera_step(cursor, camera);
+}
+
+/// Takes the next samples one by one.
+static inline void samples_of_tiles(CameraCursor* cursor, constant CameraRecord* camera, CameraSamples* s) {
+    uint x[LANES], y[LANES], sample[LANES];
+    for (uint lane = 0; lane < LANES; ++lane) {
+        const bool whole = cursor->columns * cursor->rows == TILE * TILE;
+        const uint16 place = (uint16)(cursor->row * TILE + cursor->column);
+        x[lane] = cursor->tile_x + (whole ? every_other_bit(place).s0 : cursor->column);
+        y[lane] = cursor->tile_y + (whole ? every_other_bit(place >> 1).s0 : cursor->row);
+        sample[lane] = cursor->sample;
+        camera_step(cursor, camera);
+    }
+    s->x = vload16(0, x);
+    s->y = vload16(0, y);
+    s->sample = vload16(0, sample);
+}
 
 /// Takes the next samples. A lane may lie past the last sample: its ray is not to be used.
 static inline void camera_samples(CameraCursor* cursor, constant CameraRecord* camera, CameraSamples* s) {
-    for (uint lane = 0; lane < LANES; ++lane) {
-        const bool whole = cursor->columns * cursor->rows == TILE * TILE;
-        const uint place = cursor->row * TILE + cursor->column;
-        const uint x = cursor->tile_x + (whole ? every_other_bit(place) : cursor->column);
-        const uint y = cursor->tile_y + (whole ? every_other_bit(place >> 1) : cursor->row);
-        s->x[lane] = camera->crop[0] + x;
-        s->y[lane] = camera->crop[1] + y;
-        s->pixel[lane] = y * camera->crop[2] + x;
-        s->sample[lane] = cursor->sample;
-        camera_step(cursor, camera);
-    }
-    const uint seed = camera->seed, width = camera->width;
-    for (uint lane = 0; lane < LANES; ++lane) s->path[lane] = path_camera(seed, s->y[lane] * width + s->x[lane]);
+    const uint place = cursor->row * TILE + cursor->column;
+    if (cursor->columns * cursor->rows == TILE * TILE && place + LANES <= TILE * TILE)
+        samples_of_tile(cursor, camera, s);
+    else
+        samples_of_tiles(cursor, camera, s);
+    s->pixel = s->y * camera->crop[2] + s->x;
+    s->x += camera->crop[0];
+    s->y += camera->crop[1];
+    s->path = path_camera(camera->seed, s->y * camera->width + s->x);
 }
 
 /// The rays through the samples' points of the film plane: the pixel's centre with one sample, stratified with more;
@@ -84,8 +109,7 @@ static inline void camera_rays(constant CameraRecord* camera, const CameraSample
                                Lanes3* direction) {
     float16 jitter_x = (float16)(0.5f), jitter_y = (float16)(0.5f);
     if (camera->spp != 1) stratified_samples(s->sample, s->path, RANDOM_PIXEL, &jitter_x, &jitter_y);
-    const float16 column = convert_float16(as_int16(vload16(0, s->x))),
-                  row = convert_float16(as_int16(vload16(0, s->y)));
+    const float16 column = convert_float16(as_int16(s->x)), row = convert_float16(as_int16(s->y));
     const float16 x = fma((column + jitter_x) / (float)camera->width, (float16)(2.0f), (float16)(-1.0f));
     const float16 y = fma((row + jitter_y) / (float)camera->height, (float16)(-2.0f), (float16)(1.0f));
     const float3 right = constant3(camera->right), up = constant3(camera->up);

@@ -132,31 +132,28 @@ static inline void chunk_visit_planes(RayChunk* c, const Geometry* geometry) {
     }
 }
 
-/// Goes on with ray i alone, from its best hit so far.
-static inline Hit chunk_traverse_ray(const RayChunk* c, const Geometry* geometry, uint i, bool any_hit) {
+/// Ray i alone: its query, from its best hit so far, and its frames.
+static inline void chunk_take_ray(const RayChunk* c, uint i, Query* query, SlabFrame* slabs, TriangleFrame* frame) {
     const uint octant = get_octant(c, i);
-    Query query;
-    query.after.t = 0.0f;
-    query.after.primitive = NO_INDEX;
-    query.best = chunk_hit(c, i);
-    query.origin = (float3)(get_lane(c->origin[0], i), get_lane(c->origin[1], i), get_lane(c->origin[2], i));
-    query.direction =
+    query->after.t = 0.0f;
+    query->after.primitive = NO_INDEX;
+    query->best = chunk_hit(c, i);
+    query->origin = (float3)(get_lane(c->origin[0], i), get_lane(c->origin[1], i), get_lane(c->origin[2], i));
+    query->direction =
         (float3)(get_lane(c->direction[0], i), get_lane(c->direction[1], i), get_lane(c->direction[2], i));
-    SlabFrame slabs;
-    slabs.inverse = (float3)(get_lane(c->inverse[0], i), get_lane(c->inverse[1], i), get_lane(c->inverse[2], i));
-    slabs.near = (float3)(get_lane(c->near[0], i), get_lane(c->near[1], i), get_lane(c->near[2], i));
-    slabs.far = (float3)(get_lane(c->far[0], i), get_lane(c->far[1], i), get_lane(c->far[2], i));
+    slabs->inverse = (float3)(get_lane(c->inverse[0], i), get_lane(c->inverse[1], i), get_lane(c->inverse[2], i));
+    slabs->near = (float3)(get_lane(c->near[0], i), get_lane(c->near[1], i), get_lane(c->near[2], i));
+    slabs->far = (float3)(get_lane(c->far[0], i), get_lane(c->far[1], i), get_lane(c->far[2], i));
 #pragma unroll
-    for (uint axis = 0; axis < 3; ++axis) slabs.sign[axis] = octant >> (OCTANT_SIGN + axis) & 1u;
-    TriangleFrame frame = frame_axes(octant & OCTANT_AXIS, slabs.sign[octant & OCTANT_AXIS] != 0);
-    frame.origin_x = get_lane(c->origin[frame.x], i);
-    frame.origin_y = get_lane(c->origin[frame.y], i);
-    frame.origin_z = get_lane(c->origin[frame.z], i);
-    frame.shear_x = get_lane(c->shear[0], i);
-    frame.shear_y = get_lane(c->shear[1], i);
-    frame.shear_z = get_lane(c->shear[2], i);
-    traverse(geometry, &query, &slabs, frame, any_hit);
-    return query.best;
+    for (uint axis = 0; axis < 3; ++axis) slabs->sign[axis] = octant >> (OCTANT_SIGN + axis) & 1u;
+    const uint largest = octant & OCTANT_AXIS;
+    *frame = frame_axes(largest, (octant >> (OCTANT_SIGN + largest) & 1u) != 0);
+    frame->origin_x = get_lane(c->origin[frame->x], i);
+    frame->origin_y = get_lane(c->origin[frame->y], i);
+    frame->origin_z = get_lane(c->origin[frame->z], i);
+    frame->shear_x = get_lane(c->shear[0], i);
+    frame->shear_y = get_lane(c->shear[1], i);
+    frame->shear_z = get_lane(c->shear[2], i);
 }
 
 #endif

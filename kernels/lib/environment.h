@@ -2,33 +2,37 @@
 #ifndef RAYMILL_ENVIRONMENT_H
 #define RAYMILL_ENVIRONMENT_H
 
-#include "lib/math.h"
+#include "lib/gather.h"
 
-/// Texel of a lat-long image: columns wrap around, rows stop at the poles.
-static inline float3 environment_texel(Texture image, global const float* texels, int x, int y) {
-    const int w = (int)image.width;
-    const int column = x < 0 ? x + w : x >= w ? x - w : x;
-    const int row = clamp(y, 0, (int)image.height - 1);
-    return load3(texels + 3ul * (image.first + (ulong)row * image.width + column));
+/// Texels of a lat-long image: columns wrap around, rows stop at the poles.
+static inline Lanes3 environment_texels(Texture image, global const float* texels, int16 x, int16 y) {
+    const int width = (int)image.width;
+    const int16 column = select(select(x, x - width, x >= width), x + width, x < 0);
+    const int16 row = clamp(y, 0, (int)image.height - 1);
+    const uint16 index = as_uint16(row * width + column);
+    global const float* first = texels + 3ul * image.first;
+    const Lanes3 r = {gather1(first, 3, index), gather1(first + 1, 3, index), gather1(first + 2, 3, index)};
+    return r;
 }
 
-/// Radiance from far away along the unit vector d. In a lat-long image +y is the top row and +z the middle column, with +x
-/// to its left: OpenEXR's convention for environment maps.
-static inline float3 environment_radiance(global const Texture* textures, global const float* texels,
-                                          constant SceneConstants* constants, float3 d) {
-    const float3 background = constant3(constants->background);
+/// Radiance from far away along the unit vectors d. In a lat-long image +y is the top row and +z the middle column,
+/// with +x to its left: OpenEXR's convention for environment maps.
+static inline Lanes3 environment_radiance(global const Texture* textures, global const float* texels,
+                                          constant SceneConstants* constants, Lanes3 d) {
+    const Lanes3 background = lanes_of(constant3(constants->background));
     if (constants->environment == NO_INDEX) return background;
     const Texture image = textures[constants->environment];
-    const float u = fma(angle_of(d.x, d.z), -0.5f / PI, 0.5f);
-    const float v = angle_of(sqrt(fma(d.x, d.x, d.z * d.z)), d.y) / PI;
-    const float x = fma(u, (float)image.width, -0.5f), y = fma(v, (float)image.height, -0.5f);
-    const float x0 = floor(x), y0 = floor(y);
-    const float fx = x - x0, fy = y - y0;
-    const int i = (int)x0, j = (int)y0;
-    const float3 a = environment_texel(image, texels, i, j), b = environment_texel(image, texels, i + 1, j);
-    const float3 c = environment_texel(image, texels, i, j + 1), e = environment_texel(image, texels, i + 1, j + 1);
-    const float3 top = fma3(fx, b - a, a), bottom = fma3(fx, e - c, c);
-    return background + fma3(fy, bottom - top, top) * constant3(constants->environment_scale);
+    const float16 u = fma(lanes_angle(d.x, d.z), (float16)(-0.5f / PI), (float16)(0.5f));
+    const float16 v = lanes_angle(sqrt(fma(d.x, d.x, d.z * d.z)), d.y) / PI;
+    const float16 x = fma(u, (float16)((float)image.width), (float16)(-0.5f));
+    const float16 y = fma(v, (float16)((float)image.height), (float16)(-0.5f));
+    const float16 x0 = floor(x), y0 = floor(y);
+    const int16 i = convert_int16(x0), j = convert_int16(y0);
+    const Lanes3 a = environment_texels(image, texels, i, j), b = environment_texels(image, texels, i + 1, j);
+    const Lanes3 c = environment_texels(image, texels, i, j + 1), e = environment_texels(image, texels, i + 1, j + 1);
+    const Lanes3 top = lanes_fma(x - x0, lanes_sub(b, a), a), bottom = lanes_fma(x - x0, lanes_sub(e, c), c);
+    const Lanes3 sky = lanes_fma(y - y0, lanes_sub(bottom, top), top);
+    return lanes_add(background, lanes_mul(sky, lanes_of(constant3(constants->environment_scale))));
 }
 
 #endif

@@ -3,7 +3,7 @@
 #ifndef RAYMILL_FILM_H
 #define RAYMILL_FILM_H
 
-#include "lib/math.h"
+#include "lib/gather.h"
 
 typedef struct {
     global long* sums;
@@ -13,10 +13,10 @@ typedef struct {
     uint kernel_place;  // in Counters::atomics
 } Film;
 
-// What adds to the film returns how many adds were not of zero; the kernel hands their number to film_count_atomics().
+// What adds returns how many atomic operations it issued; the kernel hands their number to film_count_atomics(). In the
+// struct it would lie in memory, and a store between two atomic operations holds them up.
 
-/// Adds to one of the counters that every frame needs, unless there is nothing to add. Returns how many atomic
-/// operations that took.
+/// Adds to one of the counters that every frame needs, unless there is nothing to add.
 static inline uint film_count(global ulong* counter, uint number) {
     if (number == 0) return 0;
     atom_add(counter, (ulong)number);
@@ -28,10 +28,8 @@ static inline void film_profile(const Film* film, global ulong* counter, uint nu
     if ((film->flags & FILM_COUNTED) && number != 0) atom_add(counter, (ulong)number);
 }
 
-/// film_adds: adds to the film that were not of zero. others: operations that are atomic in any case.
-static inline void film_count_atomics(const Film* film, uint film_adds, uint others) {
-    film_profile(film, film->counters->atomics + film->kernel_place,
-                 (film->flags & FILM_PIXELS_ONCE ? 0 : film_adds) + others);
+static inline void film_count_atomics(const Film* film, uint number) {
+    film_profile(film, film->counters->atomics + film->kernel_place, number);
 }
 
 /// The pixel's channels of a plane that is kept.
@@ -46,7 +44,7 @@ static inline bool film_keeps(const Film* film, uint plane) {
 /// What is stored of a value that the film does not hold: nothing of NaN, FILM_LIMIT of what is beyond it. Both are
 /// counted.
 static float film_cut(const Film* film, float value) {
-    film_count_atomics(film, 0, 1);  // hardly ever: not worth a register everywhere
+    film_count_atomics(film, 1);  // hardly ever: not worth a register everywhere
     if (isnan(value)) {
         atom_inc(&film->counters->not_a_number);
         return 0.0f;
@@ -55,47 +53,61 @@ static float film_cut(const Film* film, float value) {
     return copysign(FILM_LIMIT, value);
 }
 
-/// A value in units of the film, to the nearest, ties to even. NaN is left out and counted; what is beyond FILM_LIMIT
-/// is cut and counted.
-static inline long film_units(const Film* film, float value) {
-    if (!(fabs(value) <= FILM_LIMIT)) value = film_cut(film, value);
+/// Values of four pixels in units of the film, to the nearest, ties to even. NaN is left out and counted; what is
+/// beyond FILM_LIMIT is cut and counted.
+static inline long16 film_units(const Film* film, float16 value) {
+    if (any16(~(fabs(value) <= FILM_LIMIT))) {
+        float* values = (float*)&value;
+        for (uint i = 0; i < 16; ++i)
+            if (!(fabs(values[i]) <= FILM_LIMIT)) values[i] = film_cut(film, values[i]);
+    }
     value *= 4294967296.0f;
     // Floats from 2^23 on are whole. To smaller ones 2^23 is added, which leaves no bits behind the point: rint(),
     // without the dozen instructions that it may take.
-    const float whole = fabs(value) < 8388608.0f ? copysign(8388608.0f, value) : 0.0f;
-    return (long)((value + whole) - whole);
+    const float16 whole = select((float16)(0.0f), copysign((float16)(8388608.0f), value), fabs(value) < 8388608.0f);
+    return convert_long16((value + whole) - whole);
 }
 
-static inline long3 film_units3(const Film* film, float3 value) {
-    return (long3)(film_units(film, value.x), film_units(film, value.y), film_units(film, value.z));
+static inline long4 film_units4(const Film* film, float4 value) {
+    float16 row = (float16)(0.0f);
+    *(float4*)&row = value;
+    const long16 units = film_units(film, row);
+    return *(const long4*)&units;
 }
 
 static inline uint film_add_units(const Film* film, global long* sum, long units) {
     if (units == 0) return 0;
+    const bool plain = (film->flags & FILM_PIXELS_ONCE) != 0;
     long before;
-    if (film->flags & FILM_PIXELS_ONCE) {
+    if (plain) {
         before = *sum;
         *sum = (long)((ulong)before + (ulong)units);
     } else {
         before = atom_add(sum, units);
     }
     const long after = (long)((ulong)before + (ulong)units);
-    if (((before ^ after) & (units ^ after)) < 0)
-        film_count_atomics(film, 0, film_count(&film->counters->saturated, 1));
-    return 1;
+    if (((before ^ after) & (units ^ after)) < 0) film_count_atomics(film, film_count(&film->counters->saturated, 1));
+    return plain ? 0 : 1;
 }
 
-/// Adds to the first three channels of one plane.
-static inline uint film_add_units3(const Film* film, uint plane, uint pixel, long3 units) {
-    global long* sum = film_pixel(film, plane, pixel);
-    film_add_units(film, sum + 0, units.x);
-    film_add_units(film, sum + 1, units.y);
-    film_add_units(film, sum + 2, units.z);
-    return (units.x != 0) + (units.y != 0) + (units.z != 0);
+/// Adds to all four channels of a pixel.
+static inline uint film_add_units4(const Film* film, global long* sum, long4 units) {
+    if (film->flags & FILM_PIXELS_ONCE) {
+        const ulong4 before = *(global const ulong4*)sum, after = before + as_ulong4(units);
+        *(global ulong4*)sum = after;
+        const long4 overflow = as_long4((before ^ after) & (as_ulong4(units) ^ after)) < 0;
+        const long overflows = -(overflow.x + overflow.y + overflow.z + overflow.w);
+        if (overflows != 0) film_count_atomics(film, film_count(&film->counters->saturated, (uint)overflows));
+        return 0;
+    }
+    uint atomics = film_add_units(film, sum + 0, units.x);
+    atomics += film_add_units(film, sum + 1, units.y);
+    atomics += film_add_units(film, sum + 2, units.z);
+    return atomics + film_add_units(film, sum + 3, units.w);
 }
 
-static inline uint film_add(const Film* film, uint plane, uint pixel, float3 value) {
-    return film_add_units3(film, plane, pixel, film_units3(film, value));
+static inline uint film_add(const Film* film, uint plane, uint pixel, float4 value) {
+    return film_add_units4(film, film_pixel(film, plane, pixel), film_units4(film, value));
 }
 
 /// The plane that light of this kind belongs to: `term` for camera hits, else that of the branch which the path took
@@ -104,23 +116,49 @@ static inline uint film_plane(uint term, uint route) {
     return route == ROUTE_CAMERA ? term : route == ROUTE_REFLECTED ? FILM_REFLECTION : FILM_REFRACTION;
 }
 
-/// Adds radiance to the beauty, and to the plane it belongs to if that is kept.
-static inline uint film_add_radiance(const Film* film, uint term, uint route, uint pixel, float3 radiance) {
-    const long3 units = film_units3(film, radiance);
-    const uint adds = film_add_units3(film, FILM_BEAUTY, pixel, units);
-    const uint plane = film_plane(term, route);
-    return film_keeps(film, plane) ? adds + film_add_units3(film, plane, pixel, units) : adds;
+/// Radiance of two terms for each of up to LANES items: rows of three channels, and a fourth that is 0.
+typedef struct {
+    uint count;
+    uint pixel[LANES], route[LANES];
+    Rows first, second;
+} Terms;
+
+static inline void terms_put(Terms* terms, uint pixel, uint route, float3 first, float3 second) {
+    const uint i = terms->count++;
+    terms->pixel[i] = pixel;
+    terms->route[i] = route;
+    ((float4*)&terms->first)[i] = (float4)(first, 0.0f);
+    ((float4*)&terms->second)[i] = (float4)(second, 0.0f);
 }
 
 /// Adds the radiance of two terms. The beauty gets the sum of their integers, so that the planes still add up to it.
-static inline uint film_add_two(const Film* film, uint route, uint pixel, uint first_term, float3 first,
-                                uint second_term, float3 second) {
-    const long3 a = film_units3(film, first), b = film_units3(film, second);
-    uint adds = film_add_units3(film, FILM_BEAUTY, pixel, a + b);
-    const uint plane_a = film_plane(first_term, route), plane_b = film_plane(second_term, route);
-    if (film_keeps(film, plane_a)) adds += film_add_units3(film, plane_a, pixel, a);
-    if (film_keeps(film, plane_b)) adds += film_add_units3(film, plane_b, pixel, b);
-    return adds;
+/// Leaves none.
+static inline uint film_add_terms(const Film* film, uint first_term, uint second_term, Terms* terms) {
+    union {
+        long16 part[4];
+        long4 row[LANES];
+    } first, both;
+    const bool by_term = film_keeps(film, first_term) || film_keeps(film, second_term) ||
+                         film_keeps(film, FILM_REFLECTION) || film_keeps(film, FILM_REFRACTION);
+    for (uint i = terms->count; i < LANES; ++i)
+        ((float4*)&terms->first)[i] = ((float4*)&terms->second)[i] = (float4)(0.0f);
+    for (uint i = 0; i < 4; ++i) {
+        first.part[i] = film_units(film, terms->first.part[i]);
+        both.part[i] = first.part[i] + film_units(film, terms->second.part[i]);
+    }
+    uint atomics = 0;
+    for (uint i = 0; i < terms->count; ++i) {
+        const uint pixel = terms->pixel[i];
+        atomics += film_add_units4(film, film_pixel(film, FILM_BEAUTY, pixel), both.row[i]);
+        if (!by_term) continue;
+        const uint plane_a = film_plane(first_term, terms->route[i]),
+                   plane_b = film_plane(second_term, terms->route[i]);
+        if (film_keeps(film, plane_a)) atomics += film_add_units4(film, film_pixel(film, plane_a, pixel), first.row[i]);
+        if (film_keeps(film, plane_b))
+            atomics += film_add_units4(film, film_pixel(film, plane_b, pixel), both.row[i] - first.row[i]);
+    }
+    terms->count = 0;
+    return atomics;
 }
 
 #endif

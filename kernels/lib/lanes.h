@@ -1,6 +1,7 @@
 // Sixteen items side by side: one vector instruction works on all of them. A lane gets the same bits as its item would
 // alone, since each operation is rounded by itself; where items differ in what they need, both are computed and one is
-// selected. OpenCL's own float3 fills three of a vector's sixteen places.
+// selected. OpenCL's own float3 fills three of a vector's sixteen places. Elementary functions are our own, because a
+// library's differ between its scalar and its vectorised form.
 #ifndef RAYMILL_LANES_H
 #define RAYMILL_LANES_H
 
@@ -17,25 +18,6 @@ static inline Lanes3 lanes_of(float3 v) {
     const Lanes3 r = {(float16)(v.x), (float16)(v.y), (float16)(v.z)};
     return r;
 }
-static inline Lanes3 lanes_load(const float (*p)[LANES]) {
-    const Lanes3 r = {vload16(0, p[0]), vload16(0, p[1]), vload16(0, p[2])};
-    return r;
-}
-static inline void lanes_store(float (*p)[LANES], Lanes3 v) {
-    vstore16(v.x, 0, p[0]);
-    vstore16(v.y, 0, p[1]);
-    vstore16(v.z, 0, p[2]);
-}
-/// Writes v into one lane, and reads it.
-static inline void lane_put(float (*p)[LANES], uint lane, float3 v) {
-    p[0][lane] = v.x;
-    p[1][lane] = v.y;
-    p[2][lane] = v.z;
-}
-static inline float3 lane_get(const float (*p)[LANES], uint lane) {
-    return (float3)(p[0][lane], p[1][lane], p[2][lane]);
-}
-
 static inline Lanes3 lanes_minus(Lanes3 a) {
     const Lanes3 r = {-a.x, -a.y, -a.z};
     return r;
@@ -70,6 +52,10 @@ static inline Lanes3 lanes_select(Lanes3 a, Lanes3 b, int16 where) {
     const Lanes3 r = {select(a.x, b.x, where), select(a.y, b.y, where), select(a.z, b.z, where)};
     return r;
 }
+static inline Lanes3 lanes_cross(Lanes3 a, Lanes3 b) {
+    const Lanes3 r = {fma(a.y, b.z, -(a.z * b.y)), fma(a.z, b.x, -(a.x * b.z)), fma(a.x, b.y, -(a.y * b.x))};
+    return r;
+}
 static inline float16 lanes_dot(Lanes3 a, Lanes3 b) {
     return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z));
 }
@@ -83,9 +69,86 @@ static inline int16 lanes_any(Lanes3 v) {
     return (v.x != 0.0f) | (v.y != 0.0f) | (v.z != 0.0f);
 }
 
+static inline float16 lanes_max(Lanes3 v) {
+    return max16(max16(v.x, v.y), v.z);
+}
+/// Largest size of a coordinate.
+static inline float16 lanes_max_abs(Lanes3 v) {
+    return max16(max16(fabs(v.x), fabs(v.y)), fabs(v.z));
+}
+
 /// max(x, 0); 0 for NaN.
 static inline float16 positive16(float16 x) {
     return select((float16)(0.0f), x, x > 0.0f);
+}
+
+/// 2^y within 2 units in the last place; 0 below the smallest normal number. y <= 127.
+static inline float16 lanes_exp2(float16 y) {
+    const float16 whole = rint(y);
+    const float16 f = (y - whole) * 0.693147180559945f;
+    // Taylor series of exp on [-ln2/2, ln2/2]; the first term left out is below 6e-9.
+    float16 p = (float16)(1.0f / 5040.0f);
+    p = fma(p, f, (float16)(1.0f / 720.0f));
+    p = fma(p, f, (float16)(1.0f / 120.0f));
+    p = fma(p, f, (float16)(1.0f / 24.0f));
+    p = fma(p, f, (float16)(1.0f / 6.0f));
+    p = fma(p, f, (float16)(0.5f));
+    p = fma(p, f, (float16)(1.0f));
+    p = fma(p, f, (float16)(1.0f));
+    const int16 tiny = y < -126.0f;
+    const int16 exponent = convert_int16(select(whole, (float16)(0.0f), tiny));
+    return select(p * as_float16((exponent + 127) << 23), (float16)(0.0f), tiny);
+}
+
+/// log2(x) for normal x > 0, within 3 units in the last place also near x = 1.
+static inline float16 lanes_log2(float16 x) {
+    // x = 2^e m with m in [sqrt(1/2), sqrt(2)).
+    const int16 shifted = as_int16(x) - 0x3f3504f3;
+    const int16 e = shifted >> 23;
+    const float16 m = as_float16((shifted & 0x007fffff) + 0x3f3504f3);
+    // ln m = 2 atanh(s), s = (m - 1) / (m + 1), |s| < 0.172; the first term left out is below 2e-9 of the sum.
+    const float16 s = (m - 1.0f) / (m + 1.0f);
+    const float16 s2 = s * s;
+    float16 p = (float16)(1.0f / 9.0f);
+    p = fma(p, s2, (float16)(1.0f / 7.0f));
+    p = fma(p, s2, (float16)(1.0f / 5.0f));
+    p = fma(p, s2, (float16)(1.0f / 3.0f));
+    const float16 atanh_s = fma(p * s2, s, s);
+    return fma(atanh_s, (float16)(2.88539008177793f), convert_float16(e));
+}
+
+/// base^exponent for base >= 0 and exponent >= 0; 0^0 = 1. Relative error below (4 + 4 |exponent log2(base)|) 2^-24.
+static inline float16 lanes_power(float16 base, float16 exponent) {
+    const int16 zero = base < 1.17549435e-38f;
+    const float16 logarithm = exponent * lanes_log2(select(base, (float16)(1.0f), zero));
+    const float16 result = lanes_exp2(min16(logarithm, (float16)(127.0f)));
+    return select(select(result, (float16)(0.0f), zero), (float16)(1.0f), exponent == 0.0f);
+}
+
+/// exp(-x) for x >= 0.
+static inline float16 lanes_exp_minus(float16 x) {
+    return lanes_exp2(x * -1.44269504088896f);
+}
+
+/// Angles of (x, y) in [-pi, pi]; absolute error below 5e-7. (0, 0) gives 0.
+static inline float16 lanes_angle(float16 y, float16 x) {
+    const float16 ax = fabs(x), ay = fabs(y);
+    const float16 big = max16(ax, ay);
+    // atan on [0, 1] by atan(q) = pi/8 + atan((q - k) / (1 + q k)), k = tan(pi/8), then the series on |r| <= 0.4143.
+    const float16 q = min16(ax, ay) / big;
+    const float16 r = (q - 0.414213562f) / fma(q, (float16)(0.414213562f), (float16)(1.0f));
+    const float16 r2 = r * r;
+    float16 p = (float16)(1.0f / 13.0f);
+    p = fma(p, r2, (float16)(-1.0f / 11.0f));
+    p = fma(p, r2, (float16)(1.0f / 9.0f));
+    p = fma(p, r2, (float16)(-1.0f / 7.0f));
+    p = fma(p, r2, (float16)(1.0f / 5.0f));
+    p = fma(p, r2, (float16)(-1.0f / 3.0f));
+    float16 angle = 0.392699082f + fma(p * r2, r, r);
+    angle = select(angle, 0.5f * PI - angle, ay > ax);
+    angle = select(angle, PI - angle, x < 0.0f);
+    angle = select(angle, -angle, y < 0.0f);
+    return select(angle, (float16)(0.0f), big == 0.0f);
 }
 
 /// Cosine and sine of the angle `turns` * 2 pi, for turns in [0, 1]; absolute error below 2e-7.

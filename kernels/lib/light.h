@@ -97,8 +97,8 @@ static inline Lanes3 light_point(global const LightRecord* light, float16 square
 
 /// Sample `light_sample` of a light, seen from p: for each lane on its path of its camera sample.
 /// `light_position` receives the sample's point, for shading at other points.
-static inline LightSample sample_light(global const LightRecord* light, LightSlot slot, Lanes3 p, const uint* sample,
-                                       const uint* path, Lanes3* light_position) {
+static inline LightSample sample_light(global const LightRecord* light, LightSlot slot, Lanes3 p, uint16 sample,
+                                       uint16 path, Lanes3* light_position) {
     *light_position = lanes_of(load3(light->position));
     if (light->type == LIGHT_DIRECTIONAL) {
         const LightSample s = {lanes_of(-load3(light->normal)), (float16)(INFINITY),
@@ -107,8 +107,7 @@ static inline LightSample sample_light(global const LightRecord* light, LightSlo
     }
     float16 square_x = (float16)(0.5f), square_y = (float16)(0.5f);
     if (light->type >= LIGHT_RECTANGLE || light->radius > 0.0f) {
-        uint index[LANES];
-        for (uint lane = 0; lane < LANES; ++lane) index[lane] = sample[lane] * light->samples + slot.sample;
+        const uint16 index = sample * light->samples + slot.sample;
         stratified_samples(index, path, RANDOM_LIGHT + slot.light, &square_x, &square_y);
     }
     if (light->type == LIGHT_SPHERE) {

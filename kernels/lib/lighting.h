@@ -5,97 +5,22 @@
 #include "lib/light.h"
 #include "lib/shading.h"
 
-/// What Phong's formula needs at a vertex of a Gouraud-shaded triangle.
-typedef struct {
-    float position[3][LANES];
-    float normal[3][LANES];  // unit, on the side that the ray came from
-    float to_eye[3][LANES];
-    float weight[LANES];  // barycentric
-} CornerLanes;
-
-/// Up to sixteen hits as structure of arrays; lanes from `count` on hold numbers that nobody looks at.
-typedef struct {
-    uint count;
-    bool any_gouraud, any_blinn;
-    float position[3][LANES];
-    float geometric_normal[3][LANES];
-    float shading_normal[3][LANES];
-    float to_eye[3][LANES];
-    float start[3][LANES];     // of shadow rays
-    float diffuse[3][LANES];   // k_d
-    float specular[3][LANES];  // k_s
-    float weight[3][LANES];    // of both terms
-    float shininess[LANES];
-    int smooth[LANES], blinn[LANES], gouraud[LANES];  // 0 or ~0
-    uint sample[LANES], path[LANES], pixel[LANES], route[LANES];
-    CornerLanes corner[3];  // where `gouraud`
-} HitLanes;
-
-static inline void put_corners(HitLanes* hits, uint lane, const World* world, const Shading* s) {
-    global const Triangle* triangle = world->triangles + s->surface.triangle;
-    const float3 origin = load3(s->ray->origin);
-    const float side = s->surface.inside ? -1.0f : 1.0f;
-    const bool has_own = has_normals(world, triangle);
-    const float weights[3] = {s->surface.weights.x, s->surface.weights.y, s->surface.weights.z};
-    for (uint k = 0; k < 3; ++k) {
-        CornerLanes* corner = hits->corner + k;
-        global const Vertex* vertex = world->vertices + triangle->vertex[k];
-        const float3 p = load3(vertex->position);
-        const float3 n = has_own ? unit3(load3(vertex->normal)) * side : s->surface.geometric_normal;
-        lane_put(corner->position, lane, p);
-        lane_put(corner->normal, lane, n);
-        lane_put(corner->to_eye, lane, any(origin != p) ? unit3(origin - p) : s->to_eye);
-        corner->weight[lane] = weights[k];
-    }
-}
-
-/// Takes a hit in: hits->count must be below LANES.
-static inline void put_hit(HitLanes* hits, const World* world, const Shading* s) {
-    const uint lane = hits->count++;
-    const bool robust = world->constants->robust_offset != 0;
-    // Where the surface is smooth, shadow rays start above the triangle.
-    float3 start = leave_surface(world, &s->surface, 1.0f);
-    if (s->surface.smooth && robust) start += smooth_lift(world, &s->surface);
-    lane_put(hits->position, lane, s->surface.position);
-    lane_put(hits->geometric_normal, lane, s->surface.geometric_normal);
-    lane_put(hits->shading_normal, lane, s->surface.shading_normal);
-    lane_put(hits->to_eye, lane, s->to_eye);
-    lane_put(hits->start, lane, start);
-    lane_put(hits->diffuse, lane, s->diffuse);
-    lane_put(hits->specular, lane, load3(s->material->specular));
-    lane_put(hits->weight, lane, s->weight);
-    hits->shininess[lane] = s->material->shininess;
-    hits->smooth[lane] = s->surface.smooth ? ~0 : 0;
-    hits->sample[lane] = s->ray->sample;
-    hits->path[lane] = s->ray->path;
-    hits->pixel[lane] = s->ray->pixel;
-    hits->route[lane] = s->ray->route;
-    const bool blinn = (s->material->flags & MATERIAL_BLINN) != 0;
-    const bool gouraud = (s->material->flags & MATERIAL_GOURAUD) && s->surface.triangle != NO_INDEX;
-    hits->blinn[lane] = blinn ? ~0 : 0;
-    hits->gouraud[lane] = gouraud ? ~0 : 0;
-    hits->any_blinn |= blinn;
-    hits->any_gouraud |= gouraud;
-    if (gouraud) put_corners(hits, lane, world, s);
-}
-
 /// max(n.l, 0) and the highlight's cosine to the power of the shininess, both 0 where the light is behind the normal.
 /// Unit vectors; l towards the light, v towards the eye.
-static inline void phong_terms(const HitLanes* hits, Lanes3 n, Lanes3 l, Lanes3 v, float16* diffuse,
-                               float16* specular) {
+static inline void phong_terms(const Shading* s, Lanes3 n, Lanes3 l, Lanes3 v, float16* diffuse, float16* specular) {
     const float16 cosine = lanes_dot(n, l);
+    *diffuse = positive16(cosine);
+    *specular = (float16)(0.0f);
+    if (!any16(lanes_any(s->specular))) return;
     float16 highlight = lanes_dot(v, lanes_fma(2.0f * cosine, n, lanes_minus(l)));
-    if (hits->any_blinn) {
+    const int16 blinn = (s->flags & MATERIAL_BLINN) != 0;
+    if (any16(blinn)) {
         const Lanes3 sum = lanes_add(l, v);
         const float16 length = lanes_length(sum);
         const float16 halfway = select((float16)(0.0f), lanes_dot(n, sum) / length, length > 0.0f);
-        highlight = select(highlight, halfway, vload16(0, hits->blinn));
+        highlight = select(highlight, halfway, blinn);
     }
-    float base[LANES], powers[LANES];
-    vstore16(positive16(highlight), 0, base);
-    for (uint lane = 0; lane < LANES; ++lane) powers[lane] = power(base[lane], hits->shininess[lane]);
-    *diffuse = positive16(cosine);
-    *specular = select((float16)(0.0f), vload16(0, powers), cosine > 0.0f);
+    *specular = select((float16)(0.0f), lanes_power(positive16(highlight), s->shininess), cosine > 0.0f);
 }
 
 /// Light that the surface gives back of one light sample, with and without direction; colours included.
@@ -103,105 +28,112 @@ typedef struct {
     Lanes3 diffuse, specular;
 } Answer;
 
-static inline Answer phong_answer(const HitLanes* hits, LightSample light) {
+static inline Answer phong_answer(const Shading* s, LightSample light) {
     float16 diffuse, specular;
-    phong_terms(hits, lanes_load(hits->shading_normal), light.direction, lanes_load(hits->to_eye), &diffuse, &specular);
-    const Answer a = {lanes_scale(lanes_mul(lanes_load(hits->diffuse), light.incoming), diffuse),
-                      lanes_scale(lanes_mul(lanes_load(hits->specular), light.incoming), specular)};
+    phong_terms(s, s->surface.shading_normal, light.direction, s->to_eye, &diffuse, &specular);
+    const Answer a = {lanes_scale(lanes_mul(s->diffuse, light.incoming), diffuse),
+                      lanes_scale(lanes_mul(s->specular, light.incoming), specular)};
     return a;
+}
+
+/// The normal of a triangle's corner, on the side that the ray came from.
+static inline Lanes3 corner_normal(const SurfaceLanes* s, uint k) {
+    const float16 side = select((float16)(1.0f), (float16)(-1.0f), s->inside);
+    const Lanes3 own = lanes_scale(lanes_unit(s->corner[k].normal), side);
+    return lanes_select(s->geometric_normal, own, s->has_normals);
+}
+
+/// From a triangle's corner to the ray's origin.
+static inline Lanes3 corner_to_eye(const Shading* s, uint k) {
+    const Lanes3 to_eye = lanes_sub(s->hits.origin, s->surface.corner[k].position);
+    return lanes_select(s->to_eye, lanes_unit(to_eye), lanes_any(to_eye));
 }
 
 /// Gouraud: Phong's formula at the three vertices with their normals, the results interpolated.
 /// An area light's I_in is that at the hit; other lights are attenuated at each vertex.
-static inline Answer gouraud_answer(const HitLanes* hits, global const LightRecord* light, LightSample sample,
+static inline Answer gouraud_answer(const Shading* s, global const LightRecord* light, LightSample sample,
                                     Lanes3 light_position) {
     Lanes3 diffuse_light = lanes_of((float3)(0.0f)), specular_light = diffuse_light;
     for (uint k = 0; k < 3; ++k) {
-        const CornerLanes* corner = hits->corner + k;
-        const Lanes3 p = lanes_load(corner->position);
+        const Lanes3 p = s->surface.corner[k].position;
         LightSample at_vertex = sample;
         if (light->type == LIGHT_POINT || light->type == LIGHT_SPOT)
             at_vertex = from_position(light, light_position, p);
         else if (light->type != LIGHT_DIRECTIONAL)
             at_vertex.direction = towards(light_position, p).direction;
         float16 diffuse, specular;
-        phong_terms(hits, lanes_load(corner->normal), at_vertex.direction, lanes_load(corner->to_eye), &diffuse,
-                    &specular);
-        const float16 weight = vload16(0, corner->weight);
+        phong_terms(s, corner_normal(&s->surface, k), at_vertex.direction, corner_to_eye(s, k), &diffuse, &specular);
+        const float16 weight = s->surface.corner[k].weight;
         const int16 lit = diffuse != 0.0f;  // I_in is not a number where the light lies on the vertex
         diffuse_light =
             lanes_select(diffuse_light, lanes_fma(weight * diffuse, at_vertex.incoming, diffuse_light), lit);
         specular_light =
             lanes_select(specular_light, lanes_fma(weight * specular, at_vertex.incoming, specular_light), lit);
     }
-    const Answer a = {lanes_mul(lanes_load(hits->diffuse), diffuse_light),
-                      lanes_mul(lanes_load(hits->specular), specular_light)};
+    const Answer a = {lanes_mul(s->diffuse, diffuse_light), lanes_mul(s->specular, specular_light)};
     return a;
 }
 
-static inline Answer answer(const HitLanes* hits, global const LightRecord* light, LightSample sample,
+static inline Answer answer(const Shading* s, global const LightRecord* light, LightSample sample,
                             Lanes3 light_position) {
-    Answer a = phong_answer(hits, sample);
-    if (hits->any_gouraud) {
-        const Answer gouraud = gouraud_answer(hits, light, sample, light_position);
-        const int16 where = vload16(0, hits->gouraud);
-        a.diffuse = lanes_select(a.diffuse, gouraud.diffuse, where);
-        a.specular = lanes_select(a.specular, gouraud.specular, where);
+    Answer a = phong_answer(s, sample);
+    const int16 gouraud = s->surface.is_triangle & ((s->flags & MATERIAL_GOURAUD) != 0);
+    if (any16(gouraud)) {
+        const Answer at_corners = gouraud_answer(s, light, sample, light_position);
+        a.diffuse = lanes_select(a.diffuse, at_corners.diffuse, gouraud);
+        a.specular = lanes_select(a.specular, at_corners.specular, gouraud);
     }
-    const Lanes3 weight = lanes_load(hits->weight);
-    a.diffuse = lanes_mul(weight, a.diffuse);
-    a.specular = lanes_mul(weight, a.specular);
+    a.diffuse = lanes_mul(s->weight, a.diffuse);
+    a.specular = lanes_mul(s->weight, a.specular);
     return a;
 }
 
 /// Lanes whose hit may get light from this direction. Below the geometric surface there is none. Of a smooth mesh that
 /// surface is the curved one, and its shadow rays find out; without shadows the guard stays.
-static inline int16 above_surface(const HitLanes* hits, constant SceneConstants* constants, Lanes3 direction) {
-    const int16 above = lanes_dot(direction, lanes_load(hits->geometric_normal)) > 0.0f;
-    return constants->shadows == SHADOWS_NONE ? above : above | vload16(0, hits->smooth);
+static inline int16 above_surface(const SurfaceLanes* s, constant SceneConstants* constants, Lanes3 direction) {
+    const int16 above = lanes_dot(direction, s->geometric_normal) > 0.0f;
+    return constants->shadows == SHADOWS_NONE ? above : above | s->smooth;
+}
+
+/// Where shadow rays start: where the surface is smooth, above the triangle.
+static inline Lanes3 shadow_start(const World* world, const SurfaceLanes* s) {
+    const Lanes3 start = leave_surfaces(world, s, 1.0f);
+    if (!world->constants->robust_offset || !any16(s->smooth)) return start;
+    return lanes_select(start, lanes_add(start, smooth_lift(s)), s->smooth);
 }
 
 /// The segments from the hits to the light sample, for hits that are smooth from where their shadow rays start.
-static inline void aim(const HitLanes* hits, constant SceneConstants* constants, global const LightRecord* light,
-                       Lanes3 light_position, LightSample* sample) {
+static inline void aim(const SurfaceLanes* s, constant SceneConstants* constants, global const LightRecord* light,
+                       Lanes3 start, Lanes3 light_position, LightSample* sample) {
     if (!constants->robust_offset || light->type == LIGHT_DIRECTIONAL) return;
-    const LightSample lifted = towards(light_position, lanes_load(hits->start));
-    const int16 smooth = vload16(0, hits->smooth);
-    sample->distance = select(sample->distance, lifted.distance, smooth);
-    sample->direction = lanes_select(sample->direction, lifted.direction, smooth);
+    const LightSample lifted = towards(light_position, start);
+    sample->distance = select(sample->distance, lifted.distance, s->smooth);
+    sample->direction = lanes_select(sample->direction, lifted.direction, s->smooth);
 }
 
 /// Writes the shadow rays of one light sample, in the order of the hits and without those that cannot add anything.
 /// Returns how many.
-static inline uint push_shadow_rays(const HitLanes* hits, constant SceneConstants* constants,
+static inline uint push_shadow_rays(const Shading* s, Lanes3 start, constant SceneConstants* constants,
                                     global const LightRecord* light, LightSlot slot, global ShadowRay* out) {
     Lanes3 light_position;
-    LightSample sample =
-        sample_light(light, slot, lanes_load(hits->position), hits->sample, hits->path, &light_position);
-    const Answer a = answer(hits, light, sample, light_position);
+    LightSample sample = sample_light(light, slot, s->surface.position, s->hits.sample, s->hits.path, &light_position);
+    const Answer a = answer(s, light, sample, light_position);
     const int16 adds =
-        above_surface(hits, constants, sample.direction) & (lanes_any(a.diffuse) | lanes_any(a.specular));
-    aim(hits, constants, light, light_position, &sample);
+        above_surface(&s->surface, constants, sample.direction) & (lanes_any(a.diffuse) | lanes_any(a.specular));
+    aim(&s->surface, constants, light, start, light_position, &sample);
 
-    float direction[3][LANES], diffuse[3][LANES], specular[3][LANES], t_max[LANES];
-    int pushed[LANES];
-    lanes_store(direction, sample.direction);
-    lanes_store(diffuse, a.diffuse);
-    lanes_store(specular, a.specular);
-    vstore16(sample.distance * LIGHT_REACH, 0, t_max);
-    vstore16(adds, 0, pushed);
+    const Rows from = rows_of(start, sample.distance * LIGHT_REACH);
+    const Rows along = rows_of(sample.direction, as_float16(s->hits.pixel));
+    const Rows diffuse = rows_of(a.diffuse, as_float16(s->hits.route));
+    const Rows specular = rows_of(a.specular, as_float16((uint16)(slot.light)));
     uint count = 0;
-    for (uint lane = 0; lane < hits->count; ++lane) {
-        if (!pushed[lane]) continue;
+    for (uint rest = lane_mask16(adds) & ((1u << s->hits.count) - 1u); rest != 0; rest &= rest - 1) {
+        const uint lane = lowest_bit(rest);
         global ShadowRay* ray = out + count++;
-        store3(ray->origin, lane_get(hits->start, lane));
-        ray->t_max = t_max[lane];
-        store3(ray->direction, lane_get(direction, lane));
-        ray->pixel = hits->pixel[lane];
-        store3(ray->diffuse, lane_get(diffuse, lane));
-        ray->route = hits->route[lane];
-        store3(ray->specular, lane_get(specular, lane));
-        ray->light = slot.light;
+        store_row(ray->origin, row_of(&from, lane));
+        store_row(ray->direction, row_of(&along, lane));
+        store_row(ray->diffuse, row_of(&diffuse, lane));
+        store_row(ray->specular, row_of(&specular, lane));
     }
     return count;
 }

@@ -6,25 +6,38 @@
 #define RAYMILL_PACKET_H
 
 #include "lib/beam.h"
+#include "lib/flight.h"
 
 #define ENTRY_GROUPS_SHIFT 3u  // in a stack entry, above the lane
 
 // Directions that differ by more than this on an axis share too few nodes to be worth it.
-#define COHERENT_SPREAD 0.5f
-#define FEWEST_TOGETHER 12  // rays
+#define COHERENT_SPREAD 0.7f
+#define FEWEST_TOGETHER 20  // rays of a packet
+#define FEWEST_AT_A_CHILD 6  // rays that meet a child; fewer fly on alone below it
 
-/// Where the rays of a group enter the bounds of one triangle: enter_triangles() in triangle.h.
-static inline float16 enter_triangle_group(const Packet* p, global const TriangleBlock* block, uint lane, uint group) {
-    float16 enter = (float16)(0.0f);
+
+/// A block of triangles as all rays of a packet see it: corners along the axes of its triangle frame, from the origin of a
+/// pinhole's rays, and per axis of the world the planes through which rays enter each triangle's bounds.
+typedef struct {
+    float corner[3][3][BVH_WIDTH];
+    float near[3][BVH_WIDTH];
+} BlockView;
+
+static inline void view_block(const Packet* p, global const TriangleBlock* block, BlockView* view) {
 #pragma unroll
     for (uint axis = 0; axis < 3; ++axis) {
-        const float16 inverse = p->rays.inverse[axis][group], near = p->rays.near[axis][group];
-        const float16 a = fma((float16)(block->position[0][axis][lane]), inverse, near);
-        const float16 b = fma((float16)(block->position[1][axis][lane]), inverse, near);
-        const float16 c = fma((float16)(block->position[2][axis][lane]), inverse, near);
-        enter = max16(min16(min16(a, b), c), enter);
+        const float8 a = aligned8(block->position[0][axis]), b = aligned8(block->position[1][axis]);
+        const float8 c = aligned8(block->position[2][axis]);
+        vstore8(p->sign[axis] ? max8(max8(a, b), c) : min8(min8(a, b), c), 0, view->near[axis]);
     }
-    return enter;
+    if (!p->is_pinhole) return;
+#pragma unroll
+    for (uint axis = 0; axis < 3; ++axis) {
+        const float origin = p->rays.origin[p->axis[axis]][0].s0;
+#pragma unroll
+        for (uint corner = 0; corner < 3; ++corner)
+            vstore8(aligned8(block->position[corner][p->axis[axis]]) - origin, 0, view->corner[corner][axis]);
+    }
 }
 
 /// Takes a primitive as the best hit of some rays of a group. With any_hit they are done.
@@ -36,23 +49,48 @@ static inline void take_hits(RayChunk* c, uint group, int16 hit, uint primitive,
     c->best_v[group] = select(c->best_v[group], v, hit);
 }
 
+/// Of the lanes of a comparison, leaves out those on an edge that lie outside: inside_exactly() in triangle.h.
+static inline int16 keep_inside(int16 hit, uint on_edge, float16 ax, float16 ay, float16 bx, float16 by, float16 cx,
+                                float16 cy) {
+    for (; on_edge != 0; on_edge &= on_edge - 1) {
+        const uint ray = lowest_bit(on_edge);
+        if (!inside_exactly(get_lane(&ax, ray), get_lane(&ay, ray), get_lane(&bx, ray), get_lane(&by, ray),
+                            get_lane(&cx, ray), get_lane(&cy, ray)))
+            ((int*)&hit)[ray] = 0;
+    }
+    return hit;
+}
+
 /// Rays of a group that hit one triangle nearer than their best so far; replaces it. The arithmetic is that of
 /// intersect_triangles() in triangle.h, with rays in the place of triangles.
-static inline bool visit_triangle_group(Packet* p, global const TriangleBlock* block, uint lane, uint group,
-                                        bool any_hit) {
+static inline bool visit_triangle_group(Packet* p, global const TriangleBlock* block, const BlockView* view, uint lane,
+                                        uint group, bool any_hit) {
     RayChunk* c = &p->rays;
-    const uint x = p->axis[0], y = p->axis[1], z = p->axis[2];
-    const float16 origin_x = c->origin[x][group], origin_y = c->origin[y][group], origin_z = c->origin[z][group];
     const float16 shear_x = -c->shear[0][group], shear_y = -c->shear[1][group];
-    const float16 az = block->position[0][z][lane] - origin_z;
-    const float16 bz = block->position[1][z][lane] - origin_z;
-    const float16 cz = block->position[2][z][lane] - origin_z;
-    const float16 ax = fma(shear_x, az, block->position[0][x][lane] - origin_x);
-    const float16 ay = fma(shear_y, az, block->position[0][y][lane] - origin_y);
-    const float16 bx = fma(shear_x, bz, block->position[1][x][lane] - origin_x);
-    const float16 by = fma(shear_y, bz, block->position[1][y][lane] - origin_y);
-    const float16 cx = fma(shear_x, cz, block->position[2][x][lane] - origin_x);
-    const float16 cy = fma(shear_y, cz, block->position[2][y][lane] - origin_y);
+    float16 ax, ay, az, bx, by, bz, cx, cy, cz;
+    if (p->is_pinhole) {
+        az = view->corner[0][2][lane];
+        bz = view->corner[1][2][lane];
+        cz = view->corner[2][2][lane];
+        ax = fma(shear_x, az, (float16)(view->corner[0][0][lane]));
+        ay = fma(shear_y, az, (float16)(view->corner[0][1][lane]));
+        bx = fma(shear_x, bz, (float16)(view->corner[1][0][lane]));
+        by = fma(shear_y, bz, (float16)(view->corner[1][1][lane]));
+        cx = fma(shear_x, cz, (float16)(view->corner[2][0][lane]));
+        cy = fma(shear_y, cz, (float16)(view->corner[2][1][lane]));
+    } else {
+        const uint x = p->axis[0], y = p->axis[1], z = p->axis[2];
+        const float16 origin_x = c->origin[x][group], origin_y = c->origin[y][group], origin_z = c->origin[z][group];
+        az = block->position[0][z][lane] - origin_z;
+        bz = block->position[1][z][lane] - origin_z;
+        cz = block->position[2][z][lane] - origin_z;
+        ax = fma(shear_x, az, block->position[0][x][lane] - origin_x);
+        ay = fma(shear_y, az, block->position[0][y][lane] - origin_y);
+        bx = fma(shear_x, bz, block->position[1][x][lane] - origin_x);
+        by = fma(shear_y, bz, block->position[1][y][lane] - origin_y);
+        cx = fma(shear_x, cz, block->position[2][x][lane] - origin_x);
+        cy = fma(shear_y, cz, block->position[2][y][lane] - origin_y);
+    }
     const float16 ua = cx * by - cy * bx;
     const float16 va = ax * cy - ay * cx;
     const float16 wa = bx * ay - by * ax;
@@ -61,9 +99,14 @@ static inline bool visit_triangle_group(Packet* p, global const TriangleBlock* b
     if (!any16(hit)) return false;
 
     const float16 det = ua + va + wa;
-    const float16 inverse = 1.0f / det;
     const float16 shear_z = c->shear[2][group];
-    const float16 distance = fma(ua, az, fma(va, bz, wa * cz)) * shear_z * inverse;
+    const float16 scaled = fma(ua, az, fma(va, bz, wa * cz)) * shear_z;
+    // Behind the ray, as its own surface often is: not worth the division.
+    hit &= (as_int16(scaled) ^ as_int16(det)) >= 0;
+    if (!any16(hit)) return false;
+
+    const float16 inverse = 1.0f / det;
+    const float16 distance = scaled * inverse;
     const float16 best_t = c->best_t[group];
     hit &= (distance <= best_t) & (det != 0.0f);
     if (!any16(hit)) return false;
@@ -71,21 +114,18 @@ static inline bool visit_triangle_group(Packet* p, global const TriangleBlock* b
     const float16 x16 = max16(max16(fabs(ax), fabs(bx)), fabs(cx));
     const float16 y16 = max16(max16(fabs(ay), fabs(by)), fabs(cy));
     const float16 z16 = max16(max16(fabs(az), fabs(bz)), fabs(cz));
-    const float16 e = max16(max16(fabs(ua), fabs(va)), fabs(wa));
-    const float16 delta_e = 2.0f * ROUNDING * (2.0f * x16 * y16 + 5.0f * ((y16 + z16) * x16 + (x16 + z16) * y16));
-    const float16 delta = 3.0f * (6.0f * ROUNDING * e + delta_e) * z16 * fabs(shear_z) * fabs(inverse);
+    const float16 delta_e = 2.0f * ROUNDING * fma(12.0f * x16, y16, 5.0f * z16 * (x16 + y16));
+    const float16 delta = 3.0f * z16 * fabs(shear_z) * fma(delta_e, fabs(inverse), (float16)(6.0f * ROUNDING));
     hit &= distance > delta;
-    const float16 t = max16(enter_triangle_group(p, block, lane, group), distance);
+    float16 t = distance;
+#pragma unroll
+    for (uint axis = 0; axis < 3; ++axis)
+        t = max16(fma((float16)(view->near[axis][lane]), c->inverse[axis][group], c->near[axis][group]), t);
     const uint primitive = block->primitive[lane];
     hit &= (t < best_t) | ((t == best_t) & (primitive < c->best_primitive[group]));
 
-    uint on_edge = lane_mask16(hit & ((ua == 0.0f) | (va == 0.0f) | (wa == 0.0f)));
-    for (; on_edge != 0; on_edge &= on_edge - 1) {
-        const uint ray = lowest_bit(on_edge);
-        if (!inside_exactly(get_lane(&ax, ray), get_lane(&ay, ray), get_lane(&bx, ray), get_lane(&by, ray),
-                            get_lane(&cx, ray), get_lane(&cy, ray)))
-            ((int*)&hit)[ray] = 0;
-    }
+    const int16 on_edge = hit & ((ua == 0.0f) | (va == 0.0f) | (wa == 0.0f));
+    if (any16(on_edge)) hit = keep_inside(hit, lane_mask16(on_edge), ax, ay, bx, by, cx, cy);
     if (!any16(hit)) return false;
     take_hits(c, group, hit, primitive, t, va * inverse, wa * inverse, any_hit);
     return true;
@@ -133,10 +173,10 @@ static inline bool visit_sphere_group(Packet* p, global const SphereBlock* block
     return true;
 }
 
-/// Pushes the children that some group meets, the nearest on top. An entry is that of push_children() in traverse.h with
+/// Pushes the children that some group meets, with the rays that meet them, the nearest on top. An entry is that of push_children() in traverse.h with
 /// the groups in the next four bits of the distance, which only makes it a little smaller.
 static inline uint push_groups(const Geometry* geometry, global const uint* children, uint mask, float8 entry,
-                               ulong* stack, uint top) {
+                               const ulong* rays, ulong* stack, ulong* stack_rays, uint top) {
     uint met = (mask | mask >> 16) & 0xffffu;
     met = (met | met >> 8) & 0xffu;
     if (met == 0) return top;
@@ -149,6 +189,7 @@ static inline uint push_groups(const Geometry* geometry, global const uint* chil
         const uint lane = lowest_bit(met);
         const uint groups = groups_of_box(mask, lane);
         stack[top + place[lane]] = (ulong)(key[lane] | groups << ENTRY_GROUPS_SHIFT) << 32 | children[lane];
+        stack_rays[top + place[lane]] = rays[lane];
         prefetch_child(geometry, children[lane]);
     }
     return top + count;
@@ -158,9 +199,12 @@ static inline uint push_groups(const Geometry* geometry, global const uint* chil
 static inline bool visit_triangles_groups(Packet* p, global const TriangleBlock* block, uint groups, bool any_hit) {
     bool found = false;
     uint meeting = groups_meeting_triangles(p, block) & spread_groups(groups);
+    if (meeting == 0) return false;
+    BlockView view;
+    view_block(p, block, &view);
     for (; meeting != 0; meeting &= meeting - 1) {
         const uint bit = lowest_bit(meeting);
-        found |= visit_triangle_group(p, block, bit % BVH_WIDTH, bit / BVH_WIDTH, any_hit);
+        found |= visit_triangle_group(p, block, &view, bit % BVH_WIDTH, bit / BVH_WIDTH, any_hit);
     }
     return found;
 }
@@ -177,25 +221,32 @@ static inline bool visit_spheres_groups(Packet* p, global const SphereBlock* blo
 /// there is one.
 static void traverse_packet(const Geometry* geometry, Packet* p, bool any_hit) {
     if (geometry->node_count == 0) return;
-    ulong stack[STACK_SIZE];
+    ulong stack[STACK_SIZE], stack_rays[STACK_SIZE];
+    stack_rays[0] = ~0ul;
     stack[0] = (ulong)(ALL_GROUPS << ENTRY_GROUPS_SHIFT) << 32;
     uint top = 1;
     while (top > 0) {
         const ulong item = stack[--top];
         const uint distance = (uint)(item >> 32), child = (uint)item;
         if (as_float(distance & ~(7u | ALL_GROUPS << ENTRY_GROUPS_SHIFT)) > p->farthest_of_all) continue;
+        if (popcount(stack_rays[top]) < FEWEST_AT_A_CHILD) {
+            if (fly_rays(geometry, &p->rays, stack_rays[top], child, any_hit)) update_farthest(p);
+            continue;
+        }
         const uint groups = distance >> ENTRY_GROUPS_SHIFT & ALL_GROUPS;
         if (!(child & CHILD_LEAF)) {
             global const BvhNode* node = geometry->nodes + child;
             float8 entry;
             uint mask = groups_meeting_children(p, node, &entry) & spread_groups(groups);
-            if (!p->is_pinhole) {
-                for (uint rest = mask; rest != 0; rest &= rest - 1) {
-                    const uint bit = lowest_bit(rest);
-                    if (!group_meets(p, node, bit % BVH_WIDTH, bit / BVH_WIDTH)) mask &= ~(1u << bit);
-                }
+            ulong rays[BVH_WIDTH];  // that meet each child
+            vstore8((ulong8)(p->is_pinhole ? ~0ul : 0ul), 0, rays);
+            for (uint rest = p->is_pinhole ? 0u : mask; rest != 0; rest &= rest - 1) {
+                const uint bit = lowest_bit(rest), lane = bit % BVH_WIDTH, group = bit / BVH_WIDTH;
+                const uint meeting = rays_meeting(p, node, lane, group);
+                if (meeting == 0) mask &= ~(1u << bit);
+                rays[lane] |= (ulong)meeting << GROUP * group;
             }
-            top = push_groups(geometry, node->child, mask, entry, stack, top);
+            top = push_groups(geometry, node->child, mask, entry, rays, stack, stack_rays, top);
             continue;
         }
         const uint first = child & CHILD_FIRST_MASK;
@@ -207,6 +258,9 @@ static void traverse_packet(const Geometry* geometry, Packet* p, bool any_hit) {
         if (found) update_farthest(p);
     }
 }
+
+/// One bit a ray.
+static inline ulong all_rays(const RayChunk* c) { return c->count < CHUNK ? (1ul << c->count) - 1ul : ~0ul; }
 
 /// The rays of one octant, one bit each.
 static inline ulong rays_of_octant(const RayChunk* c, uint octant) {
@@ -230,7 +284,7 @@ static inline bool are_close(const RayChunk* c) {
     return true;
 }
 
-/// Traces rays of one octant: together if they are close, else one by one.
+/// Traces rays of one octant: together if they are close, else each on its own.
 static void traverse_octant(const Geometry* geometry, Packet* p, bool any_hit) {
     RayChunk* c = &p->rays;
     if (c->count >= FEWEST_TOGETHER && are_close(c)) {
@@ -238,8 +292,7 @@ static void traverse_octant(const Geometry* geometry, Packet* p, bool any_hit) {
         traverse_packet(geometry, p, any_hit);
         return;
     }
-    for (uint i = 0; i < c->count; ++i)
-        if (get_lane(c->best_t, i) >= 0.0f) chunk_set_hit(c, i, chunk_traverse_ray(c, geometry, i, any_hit));
+    fly_rays(geometry, c, all_rays(c), ROOT, any_hit);
 }
 
 /// Finds the closest hit of every ray of a chunk, or with any_hit whether there is one.
@@ -249,20 +302,18 @@ static inline void traverse_chunk(const Geometry* geometry, Packet* p, bool any_
     if (any_hit)
         for (uint group = 0; group < GROUPS; ++group)
             c->best_t[group] = select(c->best_t[group], (float16)(-1.0f), c->best_primitive[group] != NO_INDEX);
-    ulong waiting = c->count < CHUNK ? (1ul << c->count) - 1ul : ~0ul;
+    ulong waiting = all_rays(c);
     if ((waiting & ~rays_of_octant(c, c->octant[0].s0)) == 0) {
         traverse_octant(geometry, p, any_hit);
         return;
     }
     Packet part;
+    ulong alone = 0;
     while (waiting != 0) {
         const ulong members = waiting & rays_of_octant(c, get_octant(c, lowest_bit64(waiting)));
         waiting &= ~members;
         if (popcount(members) < FEWEST_TOGETHER) {
-            for (ulong rest = members; rest != 0; rest &= rest - 1) {
-                const uint i = lowest_bit64(rest);
-                if (get_lane(c->best_t, i) >= 0.0f) chunk_set_hit(c, i, chunk_traverse_ray(c, geometry, i, any_hit));
-            }
+            alone |= members;
             continue;
         }
         uint count = 0;
@@ -273,6 +324,7 @@ static inline void traverse_chunk(const Geometry* geometry, Packet* p, bool any_
         for (ulong rest = members; rest != 0; rest &= rest - 1)
             chunk_set_hit(c, lowest_bit64(rest), chunk_hit(&part.rays, count++));
     }
+    fly_rays(geometry, c, alone, ROOT, any_hit);
 }
 
 #endif

@@ -1,49 +1,57 @@
-// A hit as its light sees it: what all light samples share, and the terms that need no light sample.
+// Hits as their light sees them: what all light samples share, and the terms that need no light sample.
 #ifndef RAYMILL_SHADING_H
 #define RAYMILL_SHADING_H
 
 #include "lib/material.h"
 
-/// Everything about a hit that its light samples share.
+/// Everything about sixteen hits that their light samples share.
 typedef struct {
-    global const Ray* ray;
-    global const Material* material;
-    Surface surface;
-    float3 to_eye;      // unit
-    float3 throughput;  // at the hit, absorption included
-    float3 diffuse;     // k_d
-    float3 weight;      // of the diffuse and specular terms
-    float local_share;  // share of local illumination in the blend
+    HitLanes hits;
+    SurfaceLanes surface;
+    uint16 flags;       // of the materials
+    Lanes3 to_eye;      // unit
+    Lanes3 throughput;  // at the hit, absorption included
+    Lanes3 ambient;     // k_a
+    Lanes3 diffuse;     // k_d
+    Lanes3 specular;    // k_s
+    float16 shininess;
+    float16 local_share;  // share of local illumination in the blend
+    Lanes3 weight;        // of the diffuse and specular terms
 } Shading;
 
-static inline Shading shading_at(const World* world, global const Ray* ray, Hit hit) {
-    Shading s;
-    const float3 direction = load3(ray->direction);
-    s.ray = ray;
-    s.surface = surface_at(world, load3(ray->origin), direction, hit);
-    s.material = world->materials + s.surface.material;
-    s.to_eye = -direction;
-    s.throughput = absorbed(s.material, &s.surface, load3(ray->throughput), hit.t);
-    s.diffuse = diffuse_color(world, s.material, &s.surface);
-    s.local_share = fmax(1.0f - s.material->reflection - s.material->transmission, 0.0f);
-    s.weight = s.throughput * s.local_share;
-    return s;
+static inline void shade_hits(const World* world, Shading* s) {
+    surfaces_at(world, &s->hits, &s->surface);
+    global const Material* first = world->materials;
+    const Lanes4 ambient = material4(world, &s->surface, first->ambient);
+    const Lanes4 diffuse = material4(world, &s->surface, first->diffuse);
+    const Lanes4 specular = material4(world, &s->surface, first->specular);
+    s->flags = material_flags(world, &s->surface);
+    s->to_eye = lanes_minus(s->hits.direction);
+    s->throughput = absorbed(world, &s->surface, s->flags, s->hits.throughput, s->hits.t);
+    s->ambient = lanes_xyz(ambient);
+    s->shininess = ambient.w;
+    s->diffuse = diffuse_color(world, &s->surface, s->flags, lanes_xyz(diffuse));
+    s->specular = lanes_xyz(specular);
+    s->local_share = positive16(1.0f - diffuse.w - specular.w);  // reflection and transmission
+    s->weight = lanes_scale(s->throughput, s->local_share);
 }
 
 /// Whether any light could add anything: a perfect mirror's own colour is not seen.
 static inline bool answers_light(const Shading* s) {
-    return any(s->weight * (s->diffuse + load3(s->material->specular)) != 0.0f);
+    return any16(lanes_any(lanes_mul(s->weight, lanes_add(s->diffuse, s->specular))));
 }
 
 /// The ambient term, weighted by the blend and by the ray.
-static inline float3 ambient_radiance(const World* world, const Shading* s) {
-    return s->throughput * (load3(s->material->ambient) * constant3(world->constants->ambient) * s->local_share);
+static inline Lanes3 ambient_radiance(const World* world, const Shading* s) {
+    const Lanes3 light = lanes_of(constant3(world->constants->ambient));
+    return lanes_mul(s->throughput, lanes_scale(lanes_mul(s->ambient, light), s->local_share));
 }
 
-/// What the surface emits towards the ray, weighted by the ray alone. The back of a one-sided emitter is dark.
-static inline float3 emitted_radiance(const Shading* s) {
-    if (s->surface.inside && (s->material->flags & MATERIAL_ONE_SIDED)) return (float3)(0.0f);
-    return s->throughput * load3(s->material->emission);
+/// What the surfaces emit towards the rays, weighted by the rays alone. The back of a one-sided emitter is dark.
+static inline Lanes3 emitted_radiance(const World* world, const Shading* s) {
+    const int16 dark = s->surface.inside & ((s->flags & MATERIAL_ONE_SIDED) != 0);
+    const Lanes3 emission = lanes_xyz(material4(world, &s->surface, world->materials->emission));
+    return lanes_select(lanes_mul(s->throughput, emission), lanes_of((float3)(0.0f)), dark);
 }
 
 #endif

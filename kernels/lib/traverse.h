@@ -1,4 +1,4 @@
-// The closest hit and the light that passes: one ray through the eight-wide hierarchy, and then the infinite planes.
+// The closest hit, or any: one ray through the eight-wide hierarchy, and then the infinite planes.
 // What is found does not depend on the hierarchy: see slabs.h for the boxes, and is_later for ties.
 // Source: node layout and octant order, Wald et al., "Getting Rid of Packets", 2008.
 #ifndef RAYMILL_TRAVERSE_H
@@ -58,6 +58,8 @@ static inline bool is_later(float t, uint primitive, float than_t, uint than_pri
     return t > than_t || (t == than_t && primitive > than_primitive);
 }
 
+#define ROOT 0u  // the child word of the whole hierarchy
+
 /// Nothing hit up to t_max.
 static inline Hit no_hit(float t_max) {
     const Hit hit = {t_max, 0.0f, 0.0f, NO_INDEX};
@@ -114,12 +116,28 @@ static inline void visit_spheres(global const SphereBlock* block, const SlabFram
     }
 }
 
+static inline void visit_leaf(const Geometry* geometry, uint child, const SlabFrame* slabs, const TriangleFrame* frame,
+                              Query* query) {
+    const uint first = child & CHILD_FIRST_MASK;
+    const uint last = first + (child >> CHILD_BLOCKS_SHIFT & CHILD_BLOCKS_MASK);
+    for (uint block = first; block <= last; ++block) {
+        if (child & CHILD_SPHERES)
+            visit_spheres(geometry->spheres + block, slabs, query);
+        else
+            visit_triangles(geometry->triangles + block, slabs, *frame, query);
+    }
+}
+
+/// Not positive where the plane lies behind, not finite where the ray is parallel to it.
+static inline float distance_to_plane(global const Plane* plane, float3 origin, float3 direction) {
+    const float3 normal = load3(plane->normal);
+    const float height = dot3(normal, origin - load3(plane->point));
+    return -height / dot3(normal, direction);
+}
+
 static inline void visit_planes(const Geometry* geometry, Query* query) {
     for (uint i = 0; i < geometry->plane_count; ++i) {
-        global const Plane* plane = geometry->planes + i;
-        const float3 normal = load3(plane->normal);
-        const float height = dot3(normal, query->origin - load3(plane->point));
-        const float t = -height / dot3(normal, query->direction);
+        const float t = distance_to_plane(geometry->planes + i, query->origin, query->direction);
         if (!(t > 0.0f && t < INFINITY) || !accepts(query, t, geometry->first_plane + i)) continue;
         query->best.t = t;
         query->best.u = 0.0f;
@@ -178,7 +196,7 @@ static void traverse(const Geometry* geometry, Query* query, const SlabFrame* sl
     if (geometry->node_count == 0) return;
     ulong stack[STACK_SIZE];
     uint top = 0;
-    uint child = 0;  // the root
+    uint child = ROOT;
     for (;;) {
         if (!(child & CHILD_LEAF)) {
             global const BvhNode* node = geometry->nodes + child;
@@ -192,14 +210,7 @@ static void traverse(const Geometry* geometry, Query* query, const SlabFrame* sl
                 continue;
             }
         } else {
-            const uint first = child & CHILD_FIRST_MASK;
-            const uint last = first + (child >> CHILD_BLOCKS_SHIFT & CHILD_BLOCKS_MASK);
-            for (uint block = first; block <= last; ++block) {
-                if (child & CHILD_SPHERES)
-                    visit_spheres(geometry->spheres + block, slabs, query);
-                else
-                    visit_triangles(geometry->triangles + block, slabs, frame, query);
-            }
+            visit_leaf(geometry, child, slabs, &frame, query);
             if (any_hit && query->best.primitive != none) return;
         }
         ulong item;
@@ -219,15 +230,10 @@ static void traverse_all(const Geometry* geometry, Query* query, bool any_hit) {
     traverse(geometry, query, &slabs, triangle_frame(query->origin, query->direction), any_hit);
 }
 
-/// The closest hit in front of the ray later than `after`; primitive is NO_INDEX if there is none.
-static inline Hit closest_hit_after(const Geometry* geometry, float3 origin, float3 direction, Hit after, float t_max) {
-    Query query = {origin, direction, after, no_hit(t_max)};
+static inline Hit closest_hit(const Geometry* geometry, float3 origin, float3 direction) {
+    Query query = {origin, direction, no_hit(0.0f), no_hit(INFINITY)};
     traverse_all(geometry, &query, false);
     return query.best;
-}
-
-static inline Hit closest_hit(const Geometry* geometry, float3 origin, float3 direction) {
-    return closest_hit_after(geometry, origin, direction, no_hit(0.0f), INFINITY);
 }
 
 /// Some hit up to t_max, whichever is found first; primitive is NO_INDEX if nothing is there.

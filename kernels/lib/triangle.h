@@ -50,17 +50,6 @@ static inline TriangleFrame triangle_frame(float3 origin, float3 direction) {
     return f;
 }
 
-/// One bit a lane of a comparison's result.
-static inline uint lane_mask(int8 comparison) {
-#ifdef __AVX__
-    return (uint)__builtin_ia32_movmskps256(as_float8(comparison));
-#else
-    // Gathers the eight lowest bits of eight bytes into one byte.
-    const ulong bytes = as_ulong(convert_char8(comparison)) & 0x0101010101010101ul;
-    return (uint)((bytes * 0x0102040810204080ul) >> 56);
-#endif
-}
-
 /// Sign of ax * by - ay * bx without rounding: -1, 0 or 1 (no underflow assumed).
 static inline int cross_sign(float ax, float ay, float bx, float by) {
     const float p = ax * by, q = ay * bx;
@@ -76,8 +65,9 @@ static inline bool owns_edge(float ax, float ay, float bx, float by, int facing)
 }
 
 /// Whether the origin lies in the triangle a, b, c of the plane, decided exactly; a point on an edge that two triangles
-/// share lies in one of them.
-static bool inside_exactly(float ax, float ay, float bx, float by, float cx, float cy) {
+/// share lies in one of them. Rarely asked, but inline all the same: around a call, no vector stays in its register.
+static inline __attribute__((always_inline)) bool inside_exactly(float ax, float ay, float bx, float by, float cx,
+                                                                 float cy) {
     const int u = cross_sign(cx, cy, bx, by);
     const int v = cross_sign(ax, ay, cx, cy);
     const int w = cross_sign(bx, by, ax, ay);
@@ -151,9 +141,9 @@ static inline uint intersect_triangles(global const TriangleBlock* block, const 
     const float8 x = max8(max8(fabs(ax), fabs(bx)), fabs(cx));
     const float8 y = max8(max8(fabs(ay), fabs(by)), fabs(cy));
     const float8 z = max8(max8(fabs(az), fabs(bz)), fabs(cz));
-    const float8 e = max8(max8(fabs(ua), fabs(va)), fabs(wa));
-    const float8 delta_e = 2.0f * ROUNDING * (2.0f * x * y + 5.0f * ((y + z) * x + (x + z) * y));
-    const float8 delta = 3.0f * (6.0f * ROUNDING * e + delta_e) * z * fabs(f.shear_z) * fabs(inverse);
+    // No edge function is larger than their sum, because they have one sign.
+    const float8 delta_e = 2.0f * ROUNDING * fma(12.0f * x, y, 5.0f * z * (x + y));
+    const float8 delta = 3.0f * z * fabs(f.shear_z) * fma(delta_e, fabs(inverse), (float8)(6.0f * ROUNDING));
     // No hit before its own bounds are entered: else a box might cull what comes out a rounding error nearer than the box.
     *t = max8(enter_triangles(block, slabs), distance);
     *u = va * inverse;

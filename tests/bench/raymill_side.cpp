@@ -2,6 +2,8 @@
 
 #include <chrono>
 
+#include "device/program.hpp"
+
 namespace raymill::bench {
 
 namespace {
@@ -63,8 +65,14 @@ Build RaymillHierarchy::build() {
 
 RaymillKernels::RaymillKernels(const std::string& device, unsigned threads, const std::vector<Traversal>& traversals)
     : device_(open_device(device, threads)) {
-    for (const Traversal traversal : traversals)
-        kinds_.push_back({name_of(traversal), std::make_unique<Stages>(device_, 0, "", traversal)});
+    for (const Traversal traversal : traversals) {
+        const bool packets =
+            traversal == Traversal::packet || (traversal == Traversal::automatic && device_.info.type == "CPU");
+        const cl::Program program = build_program(device_, {"../tests/bench/occlusion.cl"}, RAYMILL_KERNELS,
+                                                  packets ? "-DRAYMILL_PACKETS" : "");
+        kinds_.push_back({name_of(traversal), std::make_unique<Stages>(device_, 0, "", traversal),
+                          make_kernel(program, "occlusion"), packets ? std::size_t{CHUNK} : 1});
+    }
 }
 
 std::vector<Variant> RaymillSide::variants(const RaySet& set) {
@@ -99,33 +107,56 @@ std::vector<Variant> RaymillSide::closest_variants(const RaySet& set) {
 }
 
 std::vector<Variant> RaymillSide::shadow_variants(const RaySet& set) {
-    struct Queues {
-        ShadowQueue rays;
-        Film film;
-    };
     const Device& device = kernels_.device();
     const std::vector<ShadowRay> rays = shadow_queue(set);
-    const auto queues = std::make_shared<Queues>(
-        Queues{{{device, std::span<const ShadowRay>(rays)}, {device, std::span<const uint>(set.segments)}},
-               film_of(device, set.rays.size())});
+    const auto queue = std::make_shared<ShadowQueue>(
+        ShadowQueue{{device, std::span<const ShadowRay>(rays)}, {device, std::span<const uint>(set.segments)}});
     std::vector<Variant> variants;
     for (const RaymillKernels::Kind& kind : kernels_.kinds()) {
-        const auto trace = [this, queues, stages = kind.stages.get()] {
-            stages->shadow(scene_, queues->rays, static_cast<uint>(queues->rays.counts.size()), queues->film);
-            kernels_.device().queue.finish();
-        };
-        const auto found = [this, queues] {
-            std::vector<std::uint32_t> blocked;
-            const std::vector<cl_long> sums = queues->film.sums.read(kernels_.device());
-            for (std::size_t i = 0; i < sums.size(); i += FILM_CHANNELS) blocked.push_back(sums[i] == 0);
-            // The next variant's flags must be its own.
-            queues->film.sums.clear(kernels_.device());
-            kernels_.device().queue.finish();
-            return blocked;
-        };
-        variants.push_back({kind.name, true, trace, found});
+        variants.push_back(occlusion_variant(kind, queue));
+        variants.push_back(film_variant(kind, queue, set.rays.size()));
     }
     return variants;
+}
+
+Variant RaymillSide::occlusion_variant(const RaymillKernels::Kind& kind, std::shared_ptr<ShadowQueue> rays) {
+    const Device& device = kernels_.device();
+    const auto blocked = std::make_shared<Buffer<cl_uchar>>(device, rays->rays.size());
+    const auto trace = [this, rays, blocked, kernel = kind.occlusion, share = kind.rays_a_work_item]() mutable {
+        cl_uint index = 0;
+        const auto pass = [&](const auto&... arguments) { (kernel.setArg(index++, arguments), ...); };
+        pass(rays->rays.memory(), rays->counts.memory(), static_cast<uint>(rays->counts.size()), scene_.nodes.memory(),
+             scene_.triangle_blocks.memory(), scene_.sphere_blocks.memory(), scene_.planes.memory(),
+             scene_.constants.memory(), blocked->memory());
+        kernels_.device().queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(rays->rays.size() / share),
+                                                     cl::NDRange(1));
+        kernels_.device().queue.finish();
+    };
+    const auto found = [this, rays, blocked] {
+        const std::vector<cl_uchar> places = blocked->read(kernels_.device());
+        const std::vector<uint> counts = rays->counts.read(kernels_.device());
+        std::vector<std::uint32_t> flags;
+        for (std::size_t segment = 0; segment < counts.size(); ++segment)
+            for (uint i = 0; i < counts[segment]; ++i) flags.push_back(places[segment * CHUNK + i]);
+        return flags;
+    };
+    return {kind.name, true, trace, found};
+}
+
+Variant RaymillSide::film_variant(const RaymillKernels::Kind& kind, std::shared_ptr<ShadowQueue> rays,
+                                  std::size_t count) {
+    const auto film = std::make_shared<Film>(film_of(kernels_.device(), count));
+    const auto trace = [this, rays, film, stages = kind.stages.get()] {
+        stages->shadow(scene_, *rays, static_cast<uint>(rays->counts.size()), *film);
+        kernels_.device().queue.finish();
+    };
+    const auto found = [this, film] {
+        std::vector<std::uint32_t> blocked;
+        const std::vector<cl_long> sums = film->sums.read(kernels_.device());
+        for (std::size_t i = 0; i < sums.size(); i += FILM_CHANNELS) blocked.push_back(sums[i] == 0);
+        return blocked;
+    };
+    return {kind.name + ", film", true, trace, found};
 }
 
 }  // namespace raymill::bench

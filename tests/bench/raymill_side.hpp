@@ -1,4 +1,5 @@
-// Our side: the hierarchy and the stages `intersect` and `shadow`, as the renderer runs them.
+// Our side: the hierarchy and the stages `intersect` and `shadow`, as the renderer runs them; and the traversal of
+// `shadow` alone.
 #pragma once
 
 #include <memory>
@@ -36,6 +37,8 @@ class RaymillKernels {
     struct Kind {
         std::string name;
         std::unique_ptr<Stages> stages;
+        cl::Kernel occlusion;          // of occlusion.cl
+        std::size_t rays_a_work_item;  // of that kernel
     };
     const Device& device() const { return device_; }
     const std::vector<Kind>& kinds() const { return kinds_; }
@@ -51,14 +54,17 @@ class RaymillSide {
     RaymillSide(const RaymillKernels& kernels, const Scene& scene, const Bvh& bvh)
         : kernels_(kernels), scene_(kernels.device(), scene, bvh) {}
 
-    /// One variant a traversal, all in one queue and launch. The film takes part where it is the result: an unblocked
-    /// shadow ray adds 1 to one channel of its own pixel, by an atomic integer addition. Closest hits leave it alone:
-    /// the rays count as secondary ones, and the background is black. Must not outlive this.
+    /// One variant a traversal, all in one queue and launch; of shadow rays two: the traversal alone, which writes
+    /// whether each ray is blocked, and the whole stage, in which an unblocked ray adds 1 to one channel of its own
+    /// pixel. Closest hits leave the film alone: the rays count as secondary ones, and the background is black. Must
+    /// not outlive this.
     std::vector<Variant> variants(const RaySet& set);
 
   private:
     std::vector<Variant> closest_variants(const RaySet& set);
     std::vector<Variant> shadow_variants(const RaySet& set);
+    Variant occlusion_variant(const RaymillKernels::Kind& kind, std::shared_ptr<ShadowQueue> rays);
+    Variant film_variant(const RaymillKernels::Kind& kind, std::shared_ptr<ShadowQueue> rays, std::size_t count);
 
     const RaymillKernels& kernels_;
     DeviceScene scene_;

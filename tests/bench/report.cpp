@@ -80,9 +80,8 @@ void print_heading(const Circumstances& c) {
                c.options.bvh == BvhQuality::fast ? "fast" : "high", c.embree, c.options.robust ? ", robust" : "");
     fmt::print(
         "P camera, S to a point light, A to an area light, R mirrored, T through glass, D diffuse rays. {} rounds: "
-        "median "
-        "[quartiles].\nTimes include reading rays and writing hits; ours of S and A the film, to which each "
-        "unblocked ray adds one channel.\n",
+        "median [quartiles].\nTimes include reading rays and writing hits, of S and A a byte each; with `film` each "
+        "unblocked ray\nadds to its pixel instead, as in a frame.\n",
         c.options.rounds);
 }
 

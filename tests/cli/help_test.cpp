@@ -17,7 +17,7 @@ void expect_help(const std::vector<std::string>& arguments, const std::vector<st
 TEST(help, of_the_program_names_every_command) {
     for (const char* flag : {"--help", "-h"})
         expect_help({flag}, {"render", "profile", "check", "devices", "explain", "verify", "replay", "scene",
-                             "--version", "raymill COMMAND --help"});
+                             "compile", "--version", "raymill COMMAND --help"});
 }
 
 TEST(help, of_render_names_its_flags_and_statuses) {

@@ -8,16 +8,18 @@ kernel void math_probe(global const uint* a, global const uint* b, uint items, u
     if (i >= items) return;
     const float x = as_float(a[i]), y = as_float(b[i]);
     float4 r = (float4)(0.0f);
-    if (selector == 0) r.x = exp2_exact(x);
-    if (selector == 1) r.x = log2_exact(x);
-    if (selector == 2) r.x = power(x, y);
-    if (selector == 3) r.xyz = exp_minus((float3)(x, y, 0.0f));
+    if (selector == 0) r.x = lanes_exp2((float16)(x)).s0;
+    if (selector == 1) r.x = lanes_log2((float16)(x)).s0;
+    if (selector == 2) r.x = lanes_power((float16)(x), (float16)(y)).s0;
+    if (selector == 3)
+        r.xyz = (float3)(lanes_exp_minus((float16)(x)).s0, lanes_exp_minus((float16)(y)).s0,
+                         lanes_exp_minus((float16)(0.0f)).s0);
     float16 first, second;
     if (selector == 4) {
         lanes_cos_sin((float16)(x), &first, &second);
         r.xy = (float2)(first.s0, second.s0);
     }
-    if (selector == 5) r.x = angle_of(y, x);
+    if (selector == 5) r.x = lanes_angle((float16)(y), (float16)(x)).s0;
     if (selector == 6) {
         lanes_disk((float16)(x), (float16)(y), &first, &second);
         r.xy = (float2)(first.s0, second.s0);
@@ -42,8 +44,8 @@ kernel void stratified_probe(global const uint* index, global const uint* key, u
                              global uint* out) {
     const uint i = get_global_id(0);
     if (i >= items || selector != 0) return;
-    uint x, y;
-    stratified_point(index[i], key[i], &x, &y);
-    out[2 * i] = x;
-    out[2 * i + 1] = y;
+    uint16 x, y;
+    stratified_point((uint16)(index[i]), (uint16)(key[i]), &x, &y);
+    out[2 * i] = x.s0;
+    out[2 * i + 1] = y.s0;
 }

@@ -166,6 +166,99 @@ TEST(Shadow, a_blocked_ray_adds_nothing_and_is_counted) {
     EXPECT_EQ(film.counters.shadow_blocked, 1u);
 }
 
+/// Surfaces across the z axis at 1, 2 ... 60, each with a colour of its own: triangles, planes, and spheres that are
+/// met twice and lie in one another. Built from far to near, so that ids do not go with distance.
+struct Filters {
+    Scene scene;
+    std::vector<glm::vec3> colors;  // by distance
+};
+
+Filters filters_across_the_axis() {
+    constexpr int count = 60;
+    Filters filters;
+    Random random(71);
+    filters.scene.materials.emplace_back();              // none of theirs
+    std::vector<uint> material(std::size_t{count} + 1);  // by distance; 0: not yet built
+    Mesh mesh;
+    std::vector<uint> of_triangle;
+    for (int z = count; z >= 1; --z) {
+        if (material[z] != 0) continue;
+        material[z] = static_cast<uint>(filters.scene.materials.size());
+        SceneMaterial& filter = filters.scene.materials.emplace_back();
+        filter.transmission = 0.9375f;
+        filter.base_color = random.in_cube(0.9f, 1);
+        const auto at = static_cast<float>(z);
+        if (z % 5 == 0 && z > 13) {  // leaves at z, enters at z - 13
+            material[z - 13] = material[z];
+            add_sphere(filters.scene, {0, 0, at - 6.5f}, 6.5f, material[z]);
+        } else if (z % 7 == 0) {
+            add_plane(filters.scene, {0, 0, at}, {0, 0, 1}, material[z]);
+        } else {
+            mesh.add_triangle({-3, -2, at}, {3, -2, at}, {0, 4, at});
+            of_triangle.push_back(material[z]);
+        }
+    }
+    filters.scene.vertices = mesh.vertices;
+    filters.scene.triangles = mesh.triangles;
+    for (std::size_t i = 0; i < of_triangle.size(); ++i) filters.scene.triangles[i].material = of_triangle[i];
+    for (int z = 1; z <= count; ++z) {
+        const SceneMaterial& filter = filters.scene.materials[material[z]];
+        filters.colors.push_back(filter.base_color * filter.transmission);
+    }
+    return filters;
+}
+
+/// An opaque triangle across the z axis.
+void add_wall(Scene& scene, float z) {
+    const auto first = static_cast<uint>(scene.vertices.size());
+    for (const glm::vec3& corner : {glm::vec3(-3, -2, z), glm::vec3(3, -2, z), glm::vec3(0, 4, z)}) {
+        Vertex vertex{};
+        store(vertex.position, corner);
+        scene.vertices.push_back(vertex);
+    }
+    scene.triangles.push_back({{first, first + 1, first + 2}, static_cast<uint>(scene.materials.size()), 0});
+    scene.materials.emplace_back();
+}
+
+/// A ray along the z axis for each number of surfaces from none to all: it ends behind that many.
+std::vector<ShadowRay> rays_along_the_axis(std::size_t surfaces) {
+    std::vector<ShadowRay> rays(CHUNK);
+    for (uint i = 0; i <= surfaces; ++i) {
+        store(rays[i].direction, {0, 0, 1});
+        rays[i].t_max = static_cast<float>(i) + 0.5f;
+        rays[i].pixel = i;
+        store(rays[i].diffuse, glm::vec3(1));
+    }
+    return rays;
+}
+
+TEST(Shadow, every_filter_on_the_way_is_crossed_once_in_the_order_of_distance) {
+    const Filters filters = filters_across_the_axis();
+    const std::vector<ShadowRay> rays = rays_along_the_axis(filters.colors.size());
+    const FilmState film =
+        KernelRig(filters.scene).shadow(rays, std::vector<uint>{static_cast<uint>(filters.colors.size()) + 1});
+    // The same single-precision products in the same order: equal to the last bit.
+    glm::vec3 left(1);
+    for (uint i = 0; i <= filters.colors.size(); ++i) {
+        if (i > 0) left *= filters.colors[i - 1];
+        for (int k = 0; k < 3; ++k) EXPECT_EQ(film.at(i, k), film_units(left[k])) << i << " surfaces, channel " << k;
+    }
+    EXPECT_EQ(film.counters.shadow_blocked, 0u);
+}
+
+TEST(Shadow, an_opaque_surface_among_many_filters_blocks) {
+    for (const uint opaque : {3u, 17u, 40u, 60u}) {
+        Filters filters = filters_across_the_axis();
+        add_wall(filters.scene, static_cast<float>(opaque) - 0.25f);
+        const std::vector<ShadowRay> rays = rays_along_the_axis(filters.colors.size());
+        const FilmState film =
+            KernelRig(filters.scene).shadow(rays, std::vector<uint>{static_cast<uint>(filters.colors.size()) + 1});
+        for (uint i = 0; i <= filters.colors.size(); ++i)
+            EXPECT_EQ(film.at(i, 0) == 0, i >= opaque) << i << " surfaces, wall before the one at " << opaque;
+        EXPECT_EQ(film.counters.shadow_blocked, filters.colors.size() + 1 - opaque);
+    }
+}
+
 TEST(Shadow, a_parallel_ray_to_a_directional_light_is_not_blocked_by_a_plane) {
     Scene scene;
     scene.materials.emplace_back();

@@ -167,9 +167,9 @@ INSTANTIATE_TEST_SUITE_P(Profile, Counts,
 
 TEST(Counts, of_bytes_do_not_depend_on_how_rays_are_traced) {
     const ProfiledScene scene;
+    RenderOptions options;
+    options.memory.queue_capacity = 256;
     const auto frame_of = [&](Traversal traversal) {
-        RenderOptions options;
-        options.memory.queue_capacity = 256;
         options.traversal = traversal;
         return Renderer(scene.device, scene.scene, scene.bvh, options).render({}, Detail::totals).profile;
     };

@@ -46,7 +46,7 @@ TEST(Times, of_the_setup_are_named_and_do_not_overlap) {
     const std::int64_t begin = profile::now();
     const ProfiledScene scene;
     const std::vector<profile::Span>& spans = scene.renderer->setup();
-    ASSERT_EQ(spans.size(), 3u);
+    ASSERT_EQ(spans.size(), 4u);
     EXPECT_EQ(spans[0].name, profile::kernels_span);
     std::int64_t last = begin;
     for (const profile::Span& span : spans) {

@@ -64,9 +64,9 @@ TEST(VerifyCommand, kernels_within_bounds_are_status_0_and_a_planted_bug_status_
     const std::filesystem::path kernels = folder.path() / "kernels";
     std::filesystem::copy(RAYMILL_SOURCE_DIR "/kernels", kernels, std::filesystem::copy_options::recursive);
     std::string text = read_text(kernels / "secondary.cl");
-    const std::string right = "leave_surface(world, surface, side)";
+    const std::string right = "leave_surfaces(world, s, side)";
     ASSERT_NE(text.find(right), std::string::npos);
-    text.replace(text.find(right), right.size(), "leave_surface(world, surface, -side)");
+    text.replace(text.find(right), right.size(), "leave_surfaces(world, s, -side)");
     std::ofstream(kernels / "secondary.cl") << text;
     const Outcome bad = run("verify " + scene + " --size 16x12 --kernel-dir " + kernels.string());
     EXPECT_EQ(bad.status, 1);

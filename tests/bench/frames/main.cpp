@@ -114,7 +114,9 @@ FrameResult measure_frame(const Arguments& a, const Device& device, const std::s
     if (!result.left_out.empty()) return result;
 
     const Bvh bvh = build_bvh(scene.vertices, scene.triangles, scene.spheres, {a.threads});
-    Renderer renderer(device, scene, bvh, {});
+    RenderOptions options;
+    options.keep_sums = false;  // as raymill render does: the picture is all that either side hands back
+    Renderer renderer(device, scene, bvh, options);
     const Frame frame = renderer.render();  // compiles the kernels, too
     result.rays = frame.rays.total();
     if (result.rays < a.min_rays) {
