@@ -16,10 +16,12 @@ static inline Lanes3 albedo(const World* world, const Shading* s) {
 }
 
 /// Adds one of these to each camera hit.
-static inline void add_feature(const Film* film, uint plane, const Shading* s, Lanes3 value, float16 fourth) {
+static inline uint add_feature(const Film* film, uint plane, const Shading* s, Lanes3 value, float16 fourth) {
     const Rows rows = rows_of(value, fourth);
+    uint atomics = 0;
     for (uint lane = 0; lane < s->hits.count; ++lane)
-        film_add(film, plane, ((const uint*)&s->hits.pixel)[lane], row_of(&rows, lane));
+        atomics += film_add(film, plane, ((const uint*)&s->hits.pixel)[lane], row_of(&rows, lane));
+    return atomics;
 }
 
 /// Objects and materials are those of sample 0.
@@ -32,17 +34,19 @@ static inline void set_ids(const Film* film, const World* world, const Shading* 
     }
 }
 
-static inline void add_camera_hits(const Film* film, const World* world, constant CameraRecord* camera,
+static inline uint add_camera_hits(const Film* film, const World* world, constant CameraRecord* camera,
                                    const Shading* s) {
     const float16 nothing = (float16)(0.0f);
-    if (film_keeps(film, FILM_ALBEDO)) add_feature(film, FILM_ALBEDO, s, albedo(world, s), nothing);
-    if (film_keeps(film, FILM_NORMAL)) add_feature(film, FILM_NORMAL, s, s->surface.shading_normal, nothing);
+    uint atomics = 0;
+    if (film_keeps(film, FILM_ALBEDO)) atomics += add_feature(film, FILM_ALBEDO, s, albedo(world, s), nothing);
+    if (film_keeps(film, FILM_NORMAL)) atomics += add_feature(film, FILM_NORMAL, s, s->surface.shading_normal, nothing);
     if (film_keeps(film, FILM_POSITION)) {
         const Lanes3 p = s->surface.position;
         const Lanes3 from_eye = lanes_sub(p, lanes_of(constant3(camera->eye)));
-        add_feature(film, FILM_POSITION, s, p, lanes_dot(from_eye, lanes_of(constant3(camera->forward))));
+        atomics += add_feature(film, FILM_POSITION, s, p, lanes_dot(from_eye, lanes_of(constant3(camera->forward))));
     }
     if (film_keeps(film, FILM_IDS)) set_ids(film, world, s);
+    return atomics;
 }
 
 /// One work-item a chunk of CHUNK rays, all of depth `depth`.
@@ -50,18 +54,22 @@ kernel void features(global const Ray* rays, uint first_ray, uint count, uint de
                      global const Vertex* vertices, global const Triangle* triangles, global const Sphere* spheres,
                      global const Plane* planes, global const Material* materials, global const Texture* textures,
                      global const float* texels, constant CameraRecord* camera, constant SceneConstants* constants,
-                     global long* film_sums, global Counters* counters, uint pixels_once) {
+                     global long* film_sums, global Counters* counters, uint film_flags) {
     const World world = {vertices, triangles, spheres, planes, materials, textures, texels, constants};
-    const Film film = {film_sums, counters, constants, pixels_once != 0};
+    const Film film = {film_sums, counters, constants, film_flags, ATOMICS_FEATURES};
     const uint begin = get_global_id(0) * CHUNK;
     const uint end = min(begin + CHUNK, count);
-    uint places[CHUNK], found = 0;
+    uint places[CHUNK], found = 0, atomics = 0;
     for (uint i = begin; i < end; ++i) {
         global const Ray* ray = rays + first_ray + i;
         if (film_keeps(&film, FILM_IDS)) {
             global long* ids = film_pixel(&film, FILM_IDS, ray->pixel);
             atom_max(ids + 2, (long)depth);
-            if (ray->route == ROUTE_CAMERA) atom_inc(ids + 3);
+            ++atomics;
+            if (ray->route == ROUTE_CAMERA) {
+                atom_inc(ids + 3);
+                ++atomics;
+            }
         }
         if (ray->route == ROUTE_CAMERA && hits[i].primitive != NO_INDEX) places[found++] = i;
     }
@@ -69,6 +77,7 @@ kernel void features(global const Ray* rays, uint first_ray, uint count, uint de
         Shading shading;
         shading.hits = gather_hits(rays + first_ray, hits, places + first, min((uint)LANES, found - first));
         shade_hits(&world, &shading);
-        add_camera_hits(&film, &world, camera, &shading);
+        atomics += add_camera_hits(&film, &world, camera, &shading);
     }
+    film_count_atomics(&film, atomics);
 }

@@ -23,14 +23,14 @@ static void intersect_chunk(const Geometry* geometry, global const Ray* rays, ui
 #endif
 
 /// What up to sixteen rays bring home that miss everything.
-static inline void add_background(const Film* film, global const Texture* textures, global const float* texels,
+static inline uint add_background(const Film* film, global const Texture* textures, global const float* texels,
                                   const HitLanes* rays) {
     const Lanes3 sky = environment_radiance(textures, texels, film->constants, rays->direction);
     Terms terms = {.count = rays->count, .second = {{(float16)(0.0f)}}};
     vstore16(rays->pixel, 0, terms.pixel);
     vstore16(rays->route, 0, terms.route);
     terms.first = rows_of(lanes_mul(rays->throughput, sky), (float16)(0.0f));
-    film_add_terms(film, FILM_EMISSION, FILM_EMISSION, &terms);
+    return film_add_terms(film, FILM_EMISSION, FILM_EMISSION, &terms);
 }
 
 /// One work-item a chunk of CHUNK rays, or one ray where rays are traced alone.
@@ -38,25 +38,26 @@ kernel void intersect(global const Ray* rays, uint first_ray, uint count, global
                       global const TriangleBlock* triangle_blocks, global const SphereBlock* sphere_blocks,
                       global const Plane* planes, global const Texture* textures, global const float* texels,
                       constant SceneConstants* constants, global Hit* hits, global long* film_sums,
-                      global Counters* counters, uint pixels_once) {
-    const Film film = {film_sums, counters, constants, pixels_once != 0};
+                      global Counters* counters, uint film_flags) {
+    const Film film = {film_sums, counters, constants, film_flags, ATOMICS_INTERSECT};
     const Geometry geometry = scene_geometry(nodes, triangle_blocks, sphere_blocks, planes, constants);
     const uint begin = get_global_id(0) * RAYS_A_WORK_ITEM;
     const uint end = min(begin + RAYS_A_WORK_ITEM, count);
     if (begin >= count) return;
     if (begin == 0) counters->children = 0;
     intersect_chunk(&geometry, rays + first_ray + begin, end - begin, hits + begin);
-    uint misses[RAYS_A_WORK_ITEM], missed = 0;
+    uint misses[RAYS_A_WORK_ITEM], missed = 0, atomics = 0;
     for (uint i = begin; i < end; ++i) {
         global const Ray* ray = rays + first_ray + i;
         if (hits[i].primitive == NO_INDEX)
             misses[missed++] = i;
         else if (ray->route == ROUTE_CAMERA)
-            film_add_units(&film, film_pixel(&film, FILM_BEAUTY, ray->pixel) + 3, FILM_ONE);
+            atomics += film_add_units(&film, film_pixel(&film, FILM_BEAUTY, ray->pixel) + 3, FILM_ONE);
     }
     for (uint first = 0; first < missed; first += LANES) {
         const uint in_lanes = min((uint)LANES, missed - first);
         const HitLanes lanes = gather_hits(rays + first_ray, hits, misses + first, in_lanes);
-        add_background(&film, textures, texels, &lanes);
+        atomics += add_background(&film, textures, texels, &lanes);
     }
+    film_count_atomics(&film, atomics);
 }

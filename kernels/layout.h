@@ -46,6 +46,10 @@ enum {
     FILM_PLANES
 };
 
+// Argument `film_flags` of the kernels that write the film.
+#define FILM_PIXELS_ONCE 1u  // no two items of the launch have the same pixel, so that plain adds do
+#define FILM_COUNTED 2u      // the frame is profiled: see Counters
+
 // A single contribution to the film is cut at this radiance; sums may reach 2^31.
 #define FILM_LIMIT 16777216.0f
 #define FILM_ONE 0x100000000l
@@ -248,17 +252,22 @@ typedef struct {
     uint seed;
 } CameraRecord;
 
+// Counters::atomics, by kernel.
+enum { ATOMICS_INTERSECT, ATOMICS_SHADE, ATOMICS_SHADOW, ATOMICS_FEATURES, ATOMICS_SECONDARY, ATOMICS_KERNELS };
+
 /// What a wave tells the host, and what the film saw. 64-bit: added to by any number of work-items.
 typedef struct {
     ulong children;          // rays that `secondary` was asked to push in this wave
-    ulong parents;           // hits since the start that `secondary` found children of
     ulong shadow_rays;       // shadow rays that `shade` has pushed since the start
     ulong shadow_traced;     // of these, how many `shadow` has taken
     ulong shadow_blocked;    // shadow rays that brought nothing
-    ulong missed;            // rays without a hit, where a frame is profiled
-    ulong passing;           // hits on surfaces that pass light on, where a frame is profiled
     ulong saturated;         // film contributions cut to FILM_LIMIT, or sums that overflowed
     ulong not_a_number;      // film contributions left out
+    // Since the start, where the frame is profiled:
+    ulong missed;            // rays without a hit
+    ulong passing;           // hits on surfaces that pass light on
+    ulong parents;           // hits that `secondary` found children of
+    ulong atomics[ATOMICS_KERNELS];  // atomic operations on the film and on the six counters above
 } Counters;
 
 /// What every shading stage needs to know of the scene beside its arrays.
@@ -294,7 +303,7 @@ RAYMILL_ASSERT_SIZE(Texture, 12);
 RAYMILL_ASSERT_SIZE(LightRecord, 96);
 RAYMILL_ASSERT_SIZE(LightSlot, 8);
 RAYMILL_ASSERT_SIZE(CameraRecord, 92);
-RAYMILL_ASSERT_SIZE(Counters, 72);
+RAYMILL_ASSERT_SIZE(Counters, 112);
 RAYMILL_ASSERT_SIZE(SceneConstants, 124);
 
 #ifndef __OPENCL_VERSION__

@@ -1,21 +1,22 @@
 // Local illumination: ambient and emission, and one shadow ray for each light sample that would add something.
 // Reads:  rays [first_ray, first_ray + count), hits [0, count), light samples [first_slot, first_slot + slot_count).
 // Writes: film (ambient and emission, with slot 0); shadow_rays and shadow_counts, a segment of CHUNK rays for each chunk
-//         and light sample, so that a segment's rays go to one light in the order of their pixels.
+//         and light sample, so that a segment's rays go to one light in the order of their pixels; counters->shadow_rays,
+//         and with slot 0 missed and passing, where the frame is profiled.
 // Next:   shadow.
 
 #include "lib/film.h"
 #include "lib/lighting.h"
 
 /// Ambient light and emission.
-static inline void add_local_light(const Film* film, const World* world, const Shading* s) {
+static inline uint add_local_light(const Film* film, const World* world, const Shading* s) {
     Terms terms;
     terms.count = s->hits.count;
     vstore16(s->hits.pixel, 0, terms.pixel);
     vstore16(s->hits.route, 0, terms.route);
     terms.first = rows_of(ambient_radiance(world, s), (float16)(0.0f));
     terms.second = rows_of(emitted_radiance(world, s), (float16)(0.0f));
-    film_add_terms(film, FILM_AMBIENT, FILM_EMISSION, &terms);
+    return film_add_terms(film, FILM_AMBIENT, FILM_EMISSION, &terms);
 }
 
 /// One work-item a chunk of CHUNK hits; segment = chunk * slot_count + slot.
@@ -24,8 +25,8 @@ kernel void shade(global const Ray* rays, uint first_ray, uint count, global con
                   global const Vertex* vertices, global const Triangle* triangles, global const Sphere* spheres,
                   global const Plane* planes, global const Material* materials, global const Texture* textures,
                   global const float* texels, constant SceneConstants* constants, global ShadowRay* shadow_rays,
-                  global uint* shadow_counts, global long* film_sums, global Counters* counters, uint pixels_once) {
-    const Film film = {film_sums, counters, constants, pixels_once != 0};
+                  global uint* shadow_counts, global long* film_sums, global Counters* counters, uint film_flags) {
+    const Film film = {film_sums, counters, constants, film_flags, ATOMICS_SHADE};
     const World world = {vertices, triangles, spheres, planes, materials, textures, texels, constants};
     const uint chunk = get_global_id(0);
     const uint begin = chunk * CHUNK;
@@ -36,12 +37,12 @@ kernel void shade(global const Ray* rays, uint first_ray, uint count, global con
         places[found] = i;
         found += hits[i].primitive != NO_INDEX;
     }
-    uint pushed[SHADOW_SAMPLES] = {0};
+    uint pushed[SHADOW_SAMPLES] = {0}, atomics = 0;
     for (uint first = 0; first < found; first += LANES) {
         Shading shading;
         shading.hits = gather_hits(rays + first_ray, hits, places + first, min((uint)LANES, found - first));
         shade_hits(&world, &shading);
-        if (first_slot == 0) add_local_light(&film, &world, &shading);
+        if (first_slot == 0) atomics += add_local_light(&film, &world, &shading);
         if (!answers_light(&shading)) continue;
         const Lanes3 start = shadow_start(&world, &shading.surface);
         for (uint k = 0; k < slot_count; ++k) {
@@ -56,5 +57,12 @@ kernel void shade(global const Ray* rays, uint first_ray, uint count, global con
         shadow_counts[chunk * slot_count + k] = pushed[k];
         total += pushed[k];
     }
-    if (total != 0) atom_add(&counters->shadow_rays, (ulong)total);
+    atomics += film_count(&counters->shadow_rays, total);
+    if (first_slot == 0 && (film_flags & FILM_COUNTED)) {
+        uint passing = 0;
+        for (uint i = 0; i < found; ++i) passing += may_spawn(&world, hits[places[i]].primitive) ? 1 : 0;
+        film_profile(&film, &counters->missed, end - begin - found);
+        film_profile(&film, &counters->passing, passing);
+    }
+    film_count_atomics(&film, atomics);
 }

@@ -1,6 +1,6 @@
 // Visibility of the light samples; what is not blocked adds its term.
 // Reads:  shadow_rays and shadow_counts, segments of CHUNK.
-// Writes: film.
+// Writes: film; counters->shadow_traced and shadow_blocked.
 // Next:   the next range of light samples, or secondary.
 
 #include "lib/blockers.h"
@@ -13,8 +13,8 @@ kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shado
                    global const SphereBlock* sphere_blocks, global const Plane* planes,
                    global const Triangle* triangles, global const Sphere* spheres, global const Material* materials,
                    constant SceneConstants* constants, global long* film_sums, global Counters* counters,
-                   uint pixels_once) {
-    const Film film = {film_sums, counters, constants, pixels_once != 0};
+                   uint film_flags) {
+    const Film film = {film_sums, counters, constants, film_flags, ATOMICS_SHADOW};
     const Geometry geometry = scene_geometry(nodes, triangle_blocks, sphere_blocks, planes, constants);
     const World world = {0, triangles, spheres, planes, materials, 0, 0, constants};
     const uint first = get_global_id(0) * RAYS_A_WORK_ITEM % CHUNK;
@@ -25,7 +25,7 @@ kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shado
     uint blockers[RAYS_A_WORK_ITEM];
     const bool all_clear = constants->shadows == SHADOWS_NONE;
     if (!all_clear) find_blockers(&geometry, rays, count, blockers);
-    uint blocked = 0;
+    uint blocked = 0, atomics = 0;
     Terms terms = {.count = 0};
     for (uint i = 0; i < count; ++i) {
         global const ShadowRay* ray = rays + i;
@@ -37,16 +37,17 @@ kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shado
                 left = transmittance(&geometry, &world, load3(ray->origin), load3(ray->direction), ray->t_max);
         }
         if (ray->route == ROUTE_CAMERA && film_keeps(&film, FILM_SHADOW)) {
-            film_add(&film, FILM_SHADOW, ray->pixel, (float4)(left, 1.0f));
+            atomics += film_add(&film, FILM_SHADOW, ray->pixel, (float4)(left, 1.0f));
         }
         if (any(left != 0.0f)) {
             terms_put(&terms, ray->pixel, ray->route, left * load3(ray->diffuse), left * load3(ray->specular));
-            if (terms.count == LANES) film_add_terms(&film, FILM_DIFFUSE, FILM_SPECULAR, &terms);
+            if (terms.count == LANES) atomics += film_add_terms(&film, FILM_DIFFUSE, FILM_SPECULAR, &terms);
         } else {
             ++blocked;
         }
     }
-    film_add_terms(&film, FILM_DIFFUSE, FILM_SPECULAR, &terms);
-    atom_add(&counters->shadow_traced, (ulong)count);
-    if (blocked != 0) atom_add(&counters->shadow_blocked, (ulong)blocked);
+    atomics += film_add_terms(&film, FILM_DIFFUSE, FILM_SPECULAR, &terms);
+    atomics += film_count(&counters->shadow_traced, count);
+    atomics += film_count(&counters->shadow_blocked, blocked);
+    film_count_atomics(&film, atomics);
 }

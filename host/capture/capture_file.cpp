@@ -128,27 +128,17 @@ void planes_field(Archive& archive, FilmPlanes& planes) {
 /// The one list of what is in a file, for writing and reading alike.
 template <class Archive>
 void fields(Archive& archive, Capture& c) {
-    archive(c.frame.scene_file);
-    archive(c.frame.scene_hash);
-    for (int* number : {&c.frame.width, &c.frame.height, &c.frame.spp, &c.frame.depth}) archive(*number);
-    archive(c.frame.seed);
-    for (double* share : {&c.frame.crop.x0, &c.frame.crop.x1, &c.frame.crop.y0, &c.frame.crop.y1}) archive(*share);
+    const auto each = [&](auto&... field) { (archive(field), ...); };
+    each(c.frame.scene_file, c.frame.scene_hash, c.frame.width, c.frame.height, c.frame.spp, c.frame.depth,
+         c.frame.seed);
+    each(c.frame.crop.x0, c.frame.crop.x1, c.frame.crop.y0, c.frame.crop.y1);
     planes_field(archive, c.frame.planes);
     auto stage = static_cast<std::uint8_t>(c.stage);
     archive(stage);
     c.stage = static_cast<profile::Stage>(stage);
-    archive(c.depth);
-    archive(c.launch);
-    archive(c.count);
-    archive(c.first_sample);
-    archive(c.slots.first);
-    archive(c.slots.count);
-    archive(c.rays);
-    archive(c.hits);
-    archive(c.shadow_rays);
-    archive(c.shadow_counts);
-    archive(c.digest.queue);
-    archive(c.digest.film);
+    each(c.depth, c.launch, c.count, c.first_sample, c.slots.first, c.slots.count);
+    each(c.rays, c.hits, c.shadow_rays, c.shadow_counts);
+    each(c.digest.queue, c.digest.film);
 }
 
 template <class Number>

@@ -47,8 +47,7 @@ Replay::Replay(const Device& device, Stages& stages, const DeviceScene& scene, c
     for (std::uint64_t first = 0; first < capture.count; first += step)
         pieces_.push_back(make_piece(capture, places, static_cast<uint>(first),
                                      static_cast<uint>(std::min<std::uint64_t>(step, capture.count - first))));
-}
-catch (const cl::Error& error) {
+} catch (const cl::Error& error) {
     throw DeviceError(error);
 }
 
@@ -146,32 +145,25 @@ std::uint64_t Replay::queue_digest(const Counters& counters, std::uint64_t& item
 }
 
 profile::Traffic Replay::traffic(const Outcome& outcome) try {
-    profile::FrameProfile frame;
-    profile::DepthTotal& depth = frame.depths.emplace_back();
-    depth.waves = 1;
-    std::uint64_t segments = 0;
-    film_.counters.clear(device_);
-    for (const Piece& piece : pieces_) {
-        segments += piece.segments;
-        if (stage_ != Stage::shade && stage_ != Stage::secondary) continue;
-        stages_.tally(scene_, piece.hits, piece.count, film_);
+    film_.counted = true;
+    clear();
+    run();
+    const std::uint64_t atomics = atomics_of(film_.counters.read_one(device_), stage_);
+
+    profile::QueueItems moved{stage_, items_, outcome.items_out};
+    clear();
+    for (Piece& piece : pieces_) {
+        moved.segments += piece.segments;
+        if (stage_ == Stage::shade) moved.hits += hit_count(piece.hits.read(device_));
+        // Which hits pass light on, shade counts.
+        if (stage_ == Stage::secondary)
+            stages_.shade(scene_, {piece.rays, 0, piece.count}, piece.hits, {}, piece.shadow_rays, film_);
     }
-    const Counters counters = film_.counters.read_one(device_);
-    depth.fates.missed = counters.missed;
-    depth.fates.weightless = counters.passing;  // or with children: traffic asks for all that pass light on
-    depth.fates.absorbed = items_ - counters.missed - counters.passing;
-    const auto add_stage = [&](Stage stage, std::uint64_t in, std::uint64_t out, std::uint64_t work_items) {
-        profile::StageTotal& total = frame.stages.emplace_back();
-        total.stage = stage;
-        total.depth = 0;
-        total.launches = 1;
-        total.items_in = in;
-        total.items_out = out;
-        total.work_items = work_items;
-    };
-    add_stage(stage_, items_, outcome.items_out, stage_ == Stage::shadow ? segments : 0);
-    if (stage_ == Stage::shade) add_stage(Stage::shadow, outcome.items_out, 0, segments);
-    return profile::traffic(frame, stage_);
+    moved.passing = film_.counters.read_one(device_).passing;
+    film_.counted = false;
+    profile::Traffic traffic = profile::bytes_moved(moved);
+    traffic.atomics = atomics;
+    return traffic;
 } catch (const cl::Error& error) {
     throw DeviceError(error);
 }

@@ -34,7 +34,7 @@ class Replay {
 
     std::uint64_t launches() const { return pieces_.size(); }
 
-    /// Memory traffic as --stats-json derives it; clears what was written.
+    /// Memory traffic and atomics as --stats-json has them; runs the stage once more, and clears what was written.
     profile::Traffic traffic(const Outcome& outcome);
 
     /// The queues as an observer of the frame saw them after the stage, where one launch does for all.

@@ -117,7 +117,7 @@ void write_files(const OutputFolder& folder, const profile::Sweep& sweep, const 
     write_text_atomically(folder.file("report.html"), [&](std::ostream& out) { profile::write_report(out, json); });
 }
 
-/// The run without any frame: what the trace shows of a sweep that was interrupted before its timeline.
+/// The run without any frame: what the trace shows of a sweep that was interrupted before any was measured.
 profile::RunProfile whole_run(const RunClock& clock, const profile::Sweep& sweep, std::int64_t start) {
     profile::RunProfile run;
     run.scene = sweep.scene;

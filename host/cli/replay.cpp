@@ -91,9 +91,10 @@ void print_report(const ReplayArguments& arguments, const capture::Capture& capt
     fmt::print("device   {}, {} compute units{}\n", device.info.name, device.info.compute_units,
                arguments.device.kernel_dir.empty() ? "" : ", kernels from " + arguments.device.kernel_dir);
     fmt::print("items    {} in, {} out\n", capture.items(), m.outcome.items_out);
-    fmt::print("bytes    {:.1f} read and {:.1f} written an item\n",
+    fmt::print("bytes    {:.1f} read and {:.1f} written an item, {:.2f} atomics\n",
                per_item(static_cast<double>(m.traffic.bytes_read), capture),
-               per_item(static_cast<double>(m.traffic.bytes_written), capture));
+               per_item(static_cast<double>(m.traffic.bytes_written), capture),
+               per_item(static_cast<double>(m.traffic.atomics), capture));
     fmt::print("repeats  {}, of {} launch{} each, {} clock\n", m.seconds.size(), m.launches,
                m.launches == 1 ? "" : "es", clock_name(arguments.clock));
     fmt::print("time     {:.4f} ms; half of the repeats {:.4f} to {:.4f}, all {:.4f} to {:.4f}\n", 1e3 * time.median,
@@ -130,6 +131,7 @@ nlohmann::ordered_json to_json(const ReplayArguments& arguments, const capture::
             {"items_out", m.outcome.items_out},
             {"bytes_read", m.traffic.bytes_read},
             {"bytes_written", m.traffic.bytes_written},
+            {"atomics", m.traffic.atomics},
             {"launches", m.launches},
             {"clock", clock_name(arguments.clock)},
             {"seconds", m.seconds},

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "cli/run_profile.hpp"
-
 namespace raymill {
 
 namespace {
@@ -82,17 +80,18 @@ void Sweeper::run(profile::Sweep& sweep) {
 bool Sweeper::rounds(profile::Sweep& sweep) {
     for (int round = 0; round < lists_.repeats; ++round) {
         for (std::size_t i = 0; i < sweep.settings.size(); ++i, ++visits_done_) {
-            visit(sweep.settings[round % 2 == 0 ? i : sweep.settings.size() - 1 - i]);
+            visit(sweep, round % 2 == 0 ? i : sweep.settings.size() - 1 - i);
             if (guard_.interrupted()) return false;
         }
     }
     return true;
 }
 
-void Sweeper::visit(profile::SweepSetting& setting) {
+void Sweeper::visit(profile::Sweep& sweep, std::size_t index) {
+    profile::SweepSetting& setting = sweep.settings[index];
     if (!setting.skipped.empty() || guard_.interrupted()) return;
     try {
-        measure(setting);
+        measure(sweep, index);
     } catch (const DeviceError& error) {
         setting.skipped = error.what();
         setting.frames.clear();
@@ -100,7 +99,8 @@ void Sweeper::visit(profile::SweepSetting& setting) {
     }
 }
 
-bool Sweeper::measure(profile::SweepSetting& setting) {
+void Sweeper::measure(profile::Sweep& sweep, std::size_t index) {
+    profile::SweepSetting& setting = sweep.settings[index];
     RunClock clock;
     const RenderOptions options = options_of(setting);
     const Device& device = devices_.at(setting.threads);
@@ -108,31 +108,53 @@ bool Sweeper::measure(profile::SweepSetting& setting) {
     setting.device_bytes = renderer.memory().total();
     setting.wave_bytes = renderer.memory().wave_bytes();
     clock.timeline.measure("warm up", [&] { warm_up(renderer); });
-    const Frame timed = clock.timeline.measure("timed frame", [&] { return renderer.render(progress(setting)); });
-    if (!is_whole(timed)) return false;
+    std::optional<profile::RunProfile> run;
+    if (!setting.profile) {
+        // Before the timed frame, so that an interrupt leaves no setting that has the one without the other.
+        run = profiled_frame(clock, device, options, renderer, setting);
+        if (!run) return;
+    }
+    const Frame timed = renderer.render(progress(setting));
+    if (!is_whole(timed)) return;
     setting.rays = timed.rays.total();
     setting.frames.push_back({timed.seconds, timed.hash()});
-    if (setting.profile) return true;
-    Frame profiled = clock.timeline.measure(
-        std::string(profile::render_span), [&] { return renderer.render(progress(setting), profile::Detail::totals); });
-    if (!is_whole(profiled)) return false;
-    setting.profile = clock.read(scene_, device, options, renderer, profiled);
-    return true;
+    if (run) keep_profile(sweep, index, std::move(*run));
+}
+
+std::optional<profile::RunProfile> Sweeper::profiled_frame(RunClock& clock, const Device& device,
+                                                           const RenderOptions& options, Renderer& renderer,
+                                                           const profile::SweepSetting& setting) {
+    Frame frame = clock.timeline.measure(std::string(profile::render_span),
+                                         [&] { return renderer.render(progress(setting), profile::Detail::launches); });
+    if (!is_whole(frame)) return std::nullopt;
+    return clock.read(scene_, device, options, renderer, frame);
+}
+
+/// The launches are those of the sweep's timeline if this is the fastest setting so far; else only their totals stay.
+void Sweeper::keep_profile(profile::Sweep& sweep, std::size_t index, profile::RunProfile run) {
+    const auto rate = [&](std::size_t i) { return profile::rays_per_second(sweep.settings[i]); };
+    if (!sweep.timeline || rate(index) > rate(sweep.timeline_setting)) {
+        sweep.timeline = run;
+        sweep.timeline_setting = index;
+    }
+    run.frame.detail = profile::Detail::totals;
+    run.frame.launches = {};
+    run.frame.waves = {};
+    sweep.settings[index].profile = std::move(run);
 }
 
 bool Sweeper::record_timeline(profile::Sweep& sweep) {
-    const profile::Finding finding = profile::find(sweep);
+    const std::size_t best_index = *profile::find(sweep).best;
+    const profile::SweepSetting& best = sweep.settings[best_index];
     RunClock clock;
-    const profile::SweepSetting& best = sweep.settings[*finding.best];
     const RenderOptions options = options_of(best);
     const Device& device = devices_.at(best.threads);
     Renderer renderer(device, scene_, bvh_, options);
     clock.timeline.measure("warm up", [&] { warm_up(renderer); });
-    Frame frame = clock.timeline.measure(std::string(profile::render_span),
-                                         [&] { return renderer.render(progress(best), profile::Detail::launches); });
-    if (!is_whole(frame)) return false;
-    sweep.timeline = clock.read(scene_, device, options, renderer, frame);
-    sweep.timeline_setting = *finding.best;
+    std::optional<profile::RunProfile> run = profiled_frame(clock, device, options, renderer, best);
+    if (!run) return false;
+    sweep.timeline = std::move(run);
+    sweep.timeline_setting = best_index;
     return true;
 }
 

@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/arguments.hpp"
 #include "cli/progress.hpp"
+#include "cli/run_profile.hpp"
 #include "profile/sweep.hpp"
 
 namespace raymill {
@@ -43,8 +45,13 @@ class Sweeper {
   private:
     void add_settings(profile::Sweep& sweep) const;
     bool rounds(profile::Sweep& sweep);
-    void visit(profile::SweepSetting& setting);
-    bool measure(profile::SweepSetting& setting);
+    void visit(profile::Sweep& sweep, std::size_t index);
+    void measure(profile::Sweep& sweep, std::size_t index);
+    /// Nothing if an interrupt came before its end.
+    std::optional<profile::RunProfile> profiled_frame(RunClock& clock, const Device& device,
+                                                      const RenderOptions& options, Renderer& renderer,
+                                                      const profile::SweepSetting& setting);
+    static void keep_profile(profile::Sweep& sweep, std::size_t index, profile::RunProfile run);
     bool record_timeline(profile::Sweep& sweep);
     RenderOptions options_of(const profile::SweepSetting& setting) const;
     Progress progress(const profile::SweepSetting& setting);

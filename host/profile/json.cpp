@@ -58,10 +58,21 @@ Json fates_json(const Fates& fates) {
 }
 
 Json stage_json(const StageTotal& total) {
-    return {{"launches", total.launches}, {"items_in", total.items_in},     {"items_out", total.items_out},
-            {"capacity", total.capacity}, {"high_water", total.high_water}, {"work_items", total.work_items},
-            {"groups", total.groups},     {"places", total.places},         {"fullness", total.fullness()},
-            {"seconds", total.seconds},   {"shortest", total.shortest},     {"longest", total.longest}};
+    return {{"launches", total.launches},
+            {"items_in", total.items_in},
+            {"items_out", total.items_out},
+            {"capacity", total.capacity},
+            {"high_water", total.high_water},
+            {"work_items", total.work_items},
+            {"groups", total.groups},
+            {"places", total.places},
+            {"fullness", total.fullness()},
+            {"seconds", total.seconds},
+            {"shortest", total.shortest},
+            {"longest", total.longest},
+            {"bytes_read", total.traffic.bytes_read},
+            {"bytes_written", total.traffic.bytes_written},
+            {"atomics", total.traffic.atomics}};
 }
 
 Json stages_json(const FrameProfile& frame) {
@@ -69,12 +80,8 @@ Json stages_json(const FrameProfile& frame) {
     for (std::size_t i = 0; i < stage_count; ++i) {
         const StageTotal total = frame.total(static_cast<Stage>(i));
         if (total.launches == 0) continue;
-        const Traffic moved = traffic(frame, total.stage);
         Json entry = {{"stage", stage_name(total.stage)}};
         entry.update(stage_json(total));
-        entry["bytes_read"] = moved.bytes_read;
-        entry["bytes_written"] = moved.bytes_written;
-        entry["atomics_at_most"] = moved.atomics_at_most;
         entry["depths"] = Json::array();
         for (const StageTotal& one : frame.stages)
             if (one.stage == total.stage && one.depth != no_depth) {
@@ -121,11 +128,12 @@ Json launches_json(const RunProfile& run) {
     Json rows = Json::array();
     for (const Launch& l : run.frame.launches)
         rows.push_back({stage_name(l.stage), belongs(l) ? Json(l.depth) : Json(), belongs(l) ? Json(l.wave) : Json(),
-                        l.items_in, l.items_out, l.work_items, l.groups, l.places, time(l.queued), time(l.submitted),
-                        time(l.started), time(l.ended)});
+                        l.items_in, l.items_out, l.work_items, l.groups, l.places, l.traffic.bytes_read,
+                        l.traffic.bytes_written, l.traffic.atomics, time(l.queued), time(l.submitted), time(l.started),
+                        time(l.ended)});
     return {{"columns",
-             {"stage", "depth", "wave", "items_in", "items_out", "work_items", "groups", "places", "queued",
-              "submitted", "started", "ended"}},
+             {"stage", "depth", "wave", "items_in", "items_out", "work_items", "groups", "places", "bytes_read",
+              "bytes_written", "atomics", "queued", "submitted", "started", "ended"}},
             {"rows", std::move(rows)}};
 }
 

@@ -10,11 +10,10 @@
 
 namespace raymill::profile {
 
-/// The kernels, in the order in which a frame first needs them. tally runs only when a frame is profiled: it counts how
-/// rays go on.
-enum class Stage : std::uint8_t { generate, intersect, shade, shadow, features, tally, secondary, resolve };
+/// The kernels, in the order in which a frame first needs them.
+enum class Stage : std::uint8_t { generate, intersect, shade, shadow, features, secondary, resolve };
 
-inline constexpr std::size_t stage_count = 8;
+inline constexpr std::size_t stage_count = 7;
 
 /// Name of the kernel.
 std::string_view stage_name(Stage stage);
@@ -44,6 +43,32 @@ struct Fates {
     bool operator==(const Fates&) const = default;
 };
 
+/// Memory traffic and atomics of launches.
+struct Traffic {
+    // Each item of a queue (layout.h: Ray, Hit, ShadowRay, segment counts) counts whole, once for every launch that
+    // reads or writes it. Exact in that sense; the scene, the film and what caches absorb are left out.
+    std::uint64_t bytes_read = 0;
+    std::uint64_t bytes_written = 0;
+    // Operations that the kernels issued, on the film and on the counters that every frame needs, as they count them
+    // themselves.
+    std::uint64_t atomics = 0;
+
+    Traffic& operator+=(const Traffic& more);
+    bool operator==(const Traffic&) const = default;
+};
+
+/// What a launch moves.
+struct QueueItems {
+    Stage stage = Stage::generate;
+    std::uint64_t in = 0, out = 0;  // see Launch
+    std::uint64_t segments = 0;     // of shadow rays that shade writes, or shadow reads
+    std::uint64_t hits = 0;         // among the rays of its wave
+    std::uint64_t passing = 0;      // of these: on surfaces that pass light on
+};
+
+/// Bytes that follow from the sizes in layout.h; no atomics.
+Traffic bytes_moved(const QueueItems& items);
+
 /// One launch of a kernel. Times in nanoseconds of the host's steady clock, as the device's events tell.
 struct Launch {
     Stage stage = Stage::generate;
@@ -51,12 +76,13 @@ struct Launch {
     std::uint32_t wave = no_wave;  // from 0 on in the order in which they ran
     std::uint64_t items_in = 0;    // that its queue holds: rays, for shadow shadow rays; pixels' channels for resolve
     std::uint64_t items_out = 0;   // rays (generate, secondary), hits (intersect), shadow rays (shade), those not
-                                  // blocked (shadow), channels (resolve); 0 for features and tally, which make no items
+                                   // blocked (shadow), channels (resolve); 0 for features, which makes no items
     std::uint64_t work_items = 0;  // that had work: one an item (generate, resolve), chunk, or segment (shadow)
     std::uint64_t groups = 0;      // work-groups
     std::uint64_t places = 0;      // items that these groups could have worked on
-    std::int64_t queued = 0;       // the host asked
-    std::int64_t submitted = 0;    // the runtime handed it to the device
+    Traffic traffic;
+    std::int64_t queued = 0;     // the host asked
+    std::int64_t submitted = 0;  // the runtime handed it to the device
     std::int64_t started = 0;
     std::int64_t ended = 0;
 };
@@ -80,14 +106,20 @@ struct StageTotal {
     std::uint64_t work_items = 0;
     std::uint64_t groups = 0;
     std::uint64_t places = 0;
-    std::uint64_t high_water = 0;      // largest items_out of a launch
-    std::uint64_t capacity = 0;        // items that the queue it writes holds; 0 where it writes none
+    std::uint64_t high_water = 0;  // largest items_out of a launch
+    std::uint64_t capacity = 0;    // items that the queue it writes holds; 0 where it writes none
+    Traffic traffic;
     double seconds = 0;                // from started to ended
     double shortest = 0, longest = 0;  // of a launch, in seconds
 
+    /// Adds other launches of the same stage.
+    StageTotal& operator+=(const StageTotal& more);
     /// Share of the places that held an item.
     double fullness() const { return places > 0 ? static_cast<double>(items_in) / static_cast<double>(places) : 0; }
 };
+
+/// A launch as the total of itself alone. capacity: of the queue that it writes.
+StageTotal total_of(const Launch& launch, std::uint64_t capacity);
 
 /// The queue of one depth and what became of its rays.
 struct DepthTotal {
@@ -100,25 +132,6 @@ struct DepthTotal {
     Fates fates;
     std::uint64_t shadow_rays = 0;
     std::uint64_t shadow_blocked = 0;
-};
-
-/// Memory traffic and atomics of a stage: derived, not counted.
-struct Traffic {
-    // Each item of a queue (layout.h: Ray, Hit, ShadowRay, segment counts) counts whole, once for every launch that
-    // reads or writes it. Exact in that sense; the scene, the film and what caches absorb are left out.
-    std::uint64_t bytes_read = 0;
-    std::uint64_t bytes_written = 0;
-    // Upper bound: an add for every channel of every film contribution (those of zero are skipped), and for every
-    // counter of every chunk (those that counted nothing are skipped).
-    std::uint64_t atomics_at_most = 0;
-};
-
-/// Adds to the film for each of these, at most; depends on the planes that the film keeps.
-struct FilmAdds {
-    std::uint64_t radiance = 3;     // contribution of light: R, G, B, and again for the layer that it belongs to
-    std::uint64_t shadow_ray = 0;   // of a camera hit, for the layer `shadow`
-    std::uint64_t feature_hit = 0;  // camera hit, for the layers that say what a hit is
-    std::uint64_t feature_ray = 0;  // ray, for those that count
 };
 
 /// Where the time of the frame went. Measured apart from each other; the four parts add up to `seconds` but for the
@@ -140,7 +153,6 @@ struct FrameProfile {
     std::vector<StageTotal> stages;  // by stage, then depth
     std::vector<DepthTotal> depths;  // from 0 on
     std::uint64_t shadow_capacity = 0;
-    FilmAdds film_adds;
     FrameTimes times;
     std::vector<Launch> launches;  // with Detail::launches, in the order in which they ran
     std::vector<Wave> waves;       // with Detail::launches
@@ -152,9 +164,6 @@ struct FrameProfile {
     std::uint64_t shadow_rays() const;
     std::uint64_t shadow_blocked() const;
 };
-
-/// Of one stage, all depths together; from the sizes in layout.h and the frame's counts.
-Traffic traffic(const FrameProfile& frame, Stage stage);
 
 /// A stretch of the host's time, in nanoseconds of its steady clock. Spans do not overlap.
 struct Span {

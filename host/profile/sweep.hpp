@@ -28,7 +28,7 @@ struct SweepSetting {
     std::uint64_t wave_bytes = 0;       // what the stages of one wave go through, at most
     std::uint64_t rays = 0;             // of a frame: camera, secondary and shadow
     std::vector<TimedFrame> frames;     // in the order in which they ran
-    std::optional<RunProfile> profile;  // of one frame more
+    std::optional<RunProfile> profile;  // of one frame more; there once a frame has been timed
 
     bool measured() const { return !frames.empty(); }
 };
@@ -56,7 +56,8 @@ struct Sweep {
     double seconds = 0;    // wall clock of the sweep
     std::vector<SweepSetting> settings;
 
-    // One more frame of the best setting, with every launch; none if the sweep was interrupted before.
+    // A frame with every launch: one more of the best setting, or if the sweep was interrupted before, the profiled one
+    // of the setting whose first frame was the fastest. None if nothing was measured.
     std::optional<RunProfile> timeline;
     std::size_t timeline_setting = 0;
 };

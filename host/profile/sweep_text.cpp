@@ -18,9 +18,10 @@ void write_row(std::ostream& out, std::size_t run, const SweepSetting& setting, 
                work_group_name(setting.work_group), setting.threads, setting.device_bytes, setting.frames.size(),
                seconds.median, seconds.shortest, seconds.longest, setting.rays,
                total.depth == no_depth ? "" : std::to_string(total.depth), stage_name(total.stage));
-    fmt::print(out, "{},{},{},{},{},{},{},{},{},{},{},{}\n", total.launches, total.items_in, total.items_out,
+    fmt::print(out, "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", total.launches, total.items_in, total.items_out,
                total.capacity, total.high_water, total.work_items, total.groups, total.places, total.fullness(),
-               total.seconds, total.shortest, total.longest);
+               total.seconds, total.shortest, total.longest, total.traffic.bytes_read, total.traffic.bytes_written,
+               total.traffic.atomics);
 }
 
 std::string setting_line(const Sweep& sweep, std::size_t i, const Finding& finding) {
@@ -41,7 +42,7 @@ std::string setting_line(const Sweep& sweep, std::size_t i, const Finding& findi
 void write_csv(std::ostream& out, const Sweep& sweep) {
     out << "run,queue_capacity,work_group,threads,device_bytes,frames,frame_median,frame_shortest,frame_longest,rays,"
            "depth,stage,launches,items_in,items_out,capacity,high_water,work_items,groups,places,fullness,seconds,"
-           "shortest,longest\n";
+           "shortest,longest,bytes_read,bytes_written,atomics\n";
     for (std::size_t run = 0; run < sweep.settings.size(); ++run)
         if (sweep.settings[run].profile)
             for (const StageTotal& total : sweep.settings[run].profile->frame.stages)

@@ -51,21 +51,20 @@ std::string times(const RunProfile& run) {
 }
 
 std::string stages(const FrameProfile& frame) {
-    std::string text = fmt::format("\n{:<12}{:>9}{:>14}{:>14}{:>7}{:>10}{:>8}{:>9}{:>11}{:>11}{:>10}\n", "Stage",
+    std::string text = fmt::format("\n{:<12}{:>9}{:>14}{:>14}{:>7}{:>10}{:>8}{:>9}{:>11}{:>11}{:>12}\n", "Stage",
                                    "launches", "items in", "items out", "full", "seconds", "share", "ns/item",
-                                   "B read/it.", "B writ./it.", "atomics <=");
+                                   "B read/it.", "B writ./it.", "atomics/it.");
     for (std::size_t i = 0; i < stage_count; ++i) {
         const StageTotal total = frame.total(static_cast<Stage>(i));
         if (total.launches == 0) continue;
-        const Traffic moved = traffic(frame, total.stage);
         // What a stage does per item: generate has no items but those that it makes.
         const std::uint64_t items = std::max<std::uint64_t>(total.items_in, 1);
         text +=
-            fmt::format("  {:<10}{:>9}{:>14}{:>14}{:>5.0f} %{:>10.4f}{:>6.1f} %{:>9.1f}{:>11.1f}{:>11.1f}{:>10.2f}\n",
+            fmt::format("  {:<10}{:>9}{:>14}{:>14}{:>5.0f} %{:>10.4f}{:>6.1f} %{:>9.1f}{:>11.1f}{:>11.1f}{:>12.2f}\n",
                         stage_name(total.stage), total.launches, total.items_in, total.items_out,
                         100 * total.fullness(), total.seconds, 100 * ratio(total.seconds, frame.times.seconds),
-                        1e9 * total.seconds / static_cast<double>(items), ratio(moved.bytes_read, items),
-                        ratio(moved.bytes_written, items), ratio(moved.atomics_at_most, items));
+                        1e9 * total.seconds / static_cast<double>(items), ratio(total.traffic.bytes_read, items),
+                        ratio(total.traffic.bytes_written, items), ratio(total.traffic.atomics, items));
     }
     return text;
 }

@@ -20,6 +20,9 @@ class Events {
   public:
     Events(std::ostream& out, std::int64_t start) : out_(out), start_(start) { out_ << "{\"traceEvents\": [\n"; }
 
+    void name_process(const std::string& name) {
+        write({{"name", "process_name"}, {"ph", "M"}, {"pid", process}, {"args", {{"name", name}}}});
+    }
     void name_track(int track, const std::string& name) {
         Json event = {{"name", "thread_name"}, {"ph", "M"}, {"pid", process}, {"tid", track}};
         event["args"] = {{"name", name}};
@@ -38,7 +41,8 @@ class Events {
         event["args"] = {{"rays", rays}};
         write(event);
     }
-    void end() { out_ << "\n], \"displayTimeUnit\": \"ms\"}\n"; }
+    /// No displayTimeUnit: some versions of Perfetto take it for the unit of the times, which are microseconds.
+    void end() { out_ << "\n]}\n"; }
 
     /// Since the run began.
     double microseconds(std::int64_t time) const { return 1e-3 * static_cast<double>(time - start_); }
@@ -58,6 +62,9 @@ void write_launch(Events& events, const Launch& l) {
                       {"items out", l.items_out},
                       {"work-groups", l.groups},
                       {"places", l.places},
+                      {"bytes read", l.traffic.bytes_read},
+                      {"bytes written", l.traffic.bytes_written},
+                      {"atomics", l.traffic.atomics},
                       {"queued", events.microseconds(l.queued)},
                       {"submitted", events.microseconds(l.submitted)}};
     if (l.wave != no_wave) {
@@ -92,6 +99,7 @@ class Fills {
 
 void write_trace(std::ostream& out, const RunProfile& run) {
     Events events(out, run.start);
+    events.name_process("raymill " + run.scene);
     events.name_track(host_track, "host");
     events.name_track(device_track, run.device);
     for (const Span& span : run.spans) events.complete(host_track, span.name, span.start, span.end, Json::object());

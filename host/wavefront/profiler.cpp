@@ -42,15 +42,24 @@ Fates fates_of(std::uint64_t rays, bool last_depth, std::uint64_t missed, std::u
     return fates;
 }
 
-profile::FilmAdds film_adds(const FilmPlanes& planes) {
-    profile::FilmAdds adds;
-    for (int plane = FILM_AMBIENT; plane <= FILM_REFRACTION; ++plane)
-        if (planes.keeps(plane)) adds.radiance = 6;
-    adds.shadow_ray = planes.keeps(FILM_SHADOW) ? 4 : 0;
-    adds.feature_hit =
-        3u * planes.keeps(FILM_ALBEDO) + 3u * planes.keeps(FILM_NORMAL) + 4u * planes.keeps(FILM_POSITION);
-    adds.feature_ray = planes.keeps(FILM_IDS) ? 2 : 0;
-    return adds;
+/// What a launch made, by the counters before and after it.
+std::uint64_t items_out(const LaunchSize& size, const Fates& fates, const Counters& before, const Counters& after) {
+    switch (size.stage) {
+        case Stage::generate:
+        case Stage::resolve:
+            return size.items;
+        case Stage::intersect:
+            return fates.hits();
+        case Stage::shade:
+            return after.shadow_rays - before.shadow_rays;
+        case Stage::shadow:
+            return after.shadow_traced - before.shadow_traced - (after.shadow_blocked - before.shadow_blocked);
+        case Stage::secondary:
+            return fates.children();
+        case Stage::features:
+            break;
+    }
+    return 0;
 }
 
 }  // namespace
@@ -73,101 +82,90 @@ ClockReading read_clocks(const Device& device) {
 }
 
 Profiler::Profiler(const Device& device, const FrameShape& shape, Detail detail)
-    : device_(device), shape_(shape), passes_(shape.passes), start_(profile::now()), clocks_(read_clocks(device)) {
+    : device_(device), shape_(shape), start_(profile::now()), clocks_(read_clocks(device)) {
     frame_.detail = detail;
     frame_.shadow_capacity = shape.shadow_capacity;
-    frame_.film_adds = film_adds(shape.planes);
+    wave_.passes.resize(shape.passes);
+    ended_.passes.resize(shape.passes);
     for (int depth = 0; depth <= shape.max_depth; ++depth) frame_.depths.emplace_back().depth = depth;
 }
 
 void Profiler::end_pass(const Buffer<Counters>& counters) {
     if (pass_ + 1 < shape_.passes)  // the last one's are what the wave leaves
-        device_.queue.enqueueReadBuffer(counters.memory(), CL_FALSE, 0, sizeof(Counters), &passes_[pass_]);
+        device_.queue.enqueueReadBuffer(counters.memory(), CL_FALSE, 0, sizeof(Counters), &wave_.passes[pass_]);
     ++pass_;
 }
 
 void Profiler::end_wave(const Batch& batch, const Counters& counters) {
+    const Counters& before = wave_.before;
     const bool last_depth = batch.depth == shape_.max_depth;
     const std::uint64_t children = last_depth ? 0 : counters.children;
-    profile::Wave wave;
-    wave.depth = batch.depth;
-    wave.rays = batch.count;
-    wave.fates = fates_of(batch.count, last_depth, counters.missed - before_.missed, counters.passing - before_.passing,
-                          counters.parents - before_.parents, children);
-    wave.shadow_rays = counters.shadow_rays - before_.shadow_rays;
-    wave.shadow_blocked = counters.shadow_blocked - before_.shadow_blocked;
-    count_wave(wave);
-
-    passes_.back() = counters;
-    Launch launch;
-    launch.depth = batch.depth;
-    launch.wave = waves_++;
-    settle(before_, launch, wave.fates.hits(), children);
-    before_ = counters;
+    wave_.passing = counters.passing - before.passing;
+    wave_.fates = fates_of(batch.count, last_depth, counters.missed - before.missed, wave_.passing,
+                           counters.parents - before.parents, children);
+    count_wave({batch.depth, batch.count, wave_.fates, counters.shadow_rays - before.shadow_rays,
+                counters.shadow_blocked - before.shadow_blocked});
+    wave_.after = counters;
+    wave_.depth = batch.depth;
+    wave_.number = waves_++;
+    settle();  // unless that has been done
+    std::swap(wave_, ended_);
+    wave_.before = counters;
+    wave_.depth = profile::no_depth;
+    wave_.number = profile::no_wave;
     pass_ = 0;
 }
 
-/// Turns the pending launches into counts: what they are, `launch` says but for what is each launch's own. counters: as
-/// they were before.
-void Profiler::settle(const Counters& counters, Launch launch, std::uint64_t hits, std::uint64_t children) {
-    Counters before = counters;
+void Profiler::settle() {
+    settle(ended_);
+}
+
+void Profiler::settle(PendingWave& wave) {
+    wave.passes.back() = wave.after;
+    Counters before = wave.before;
     std::size_t pass = 0;
-    for (const auto& [size, event] : pending_) {
-        const Counters& after = passes_[std::min(pass, passes_.size() - 1)];
+    for (const auto& [size, event] : wave.launches) {
+        // Passes share what counts their rays; other stages are launched once a wave.
+        const bool in_pass = size.stage == Stage::shade || size.stage == Stage::shadow;
+        const Counters& after = in_pass ? wave.passes[pass] : wave.after;
+        const Counters& since = in_pass ? before : wave.before;
+        Launch launch;
         launch.stage = size.stage;
-        launch.items_in = size.items;
+        launch.depth = wave.depth;
+        launch.wave = wave.number;
+        launch.items_in = size.stage == Stage::shadow ? after.shadow_traced - before.shadow_traced : size.items;
+        launch.items_out = items_out(size, wave.fates, before, after);
         launch.work_items = size.work_items;
         launch.groups = size.groups;
         launch.places = size.places;
-        launch.items_out = 0;
-        if (size.stage == Stage::generate || size.stage == Stage::resolve) launch.items_out = size.items;
-        if (size.stage == Stage::intersect) launch.items_out = hits;
-        if (size.stage == Stage::secondary) launch.items_out = children;
-        if (size.stage == Stage::shade) launch.items_out = after.shadow_rays - before.shadow_rays;
-        if (size.stage == Stage::shadow) {
-            launch.items_in = after.shadow_traced - before.shadow_traced;
-            launch.items_out = launch.items_in - (after.shadow_blocked - before.shadow_blocked);
-            before = after;
-            ++pass;
-        }
-        count(launch, {event_time(event, CL_PROFILING_COMMAND_QUEUED), event_time(event, CL_PROFILING_COMMAND_SUBMIT),
-                       event_time(event, CL_PROFILING_COMMAND_START), event_time(event, CL_PROFILING_COMMAND_END)});
+        launch.traffic = profile::bytes_moved(
+            {size.stage, launch.items_in, launch.items_out, size.segments, wave.fates.hits(), wave.passing});
+        launch.traffic.atomics = atomics_of(after, size.stage) - atomics_of(since, size.stage);
+        if (size.stage == Stage::shadow) before = wave.passes[pass++];
+        launch.queued = event_time(event, CL_PROFILING_COMMAND_QUEUED);
+        launch.submitted = event_time(event, CL_PROFILING_COMMAND_SUBMIT);
+        launch.started = event_time(event, CL_PROFILING_COMMAND_START);
+        launch.ended = event_time(event, CL_PROFILING_COMMAND_END);
+        count(launch);
     }
-    pending_.clear();
+    wave.launches.clear();
 }
 
-void Profiler::count(const Launch& launch, const Times& times) {
+void Profiler::count(const Launch& launch) {
     const auto same_stage = [&](const profile::StageTotal& total) { return total.stage == launch.stage; };
-    count_gap(times, std::ranges::none_of(frame_.stages, same_stage));
-    const double seconds = nanosecond * static_cast<double>(times.ended - times.started);
-    profile::StageTotal& total = total_of(launch.stage, launch.depth);
-    total.shortest = total.launches == 0 ? seconds : std::min(total.shortest, seconds);
-    total.longest = std::max(total.longest, seconds);
-    ++total.launches;
-    total.items_in += launch.items_in;
-    total.items_out += launch.items_out;
-    total.work_items += launch.work_items;
-    total.groups += launch.groups;
-    total.places += launch.places;
-    total.high_water = std::max(total.high_water, launch.items_out);
-    total.capacity = capacity_after(launch);
-    total.seconds += seconds;
-    if (frame_.detail != Detail::launches) return;
-    Launch& kept = frame_.launches.emplace_back(launch);
-    kept.queued = times.queued;
-    kept.submitted = times.submitted;
-    kept.started = times.started;
-    kept.ended = times.ended;
+    count_gap(launch, std::ranges::none_of(frame_.stages, same_stage));
+    place_of(launch.stage, launch.depth) += profile::total_of(launch, capacity_after(launch));
+    if (frame_.detail == Detail::launches) frame_.launches.push_back(launch);
 }
 
-void Profiler::count_gap(const Times& times, bool first_launch) {
+void Profiler::count_gap(const Launch& launch, bool first_launch) {
     if (last_end_ == 0) last_end_ = start_ - clocks_.host + clocks_.device;  // the frame began with an idle device
-    const std::int64_t asked = std::max(times.queued, last_end_);
+    const std::int64_t asked = std::max(launch.queued, last_end_);
     frame_.times.host += nanosecond * static_cast<double>(asked - last_end_);
     double& waited = first_launch ? frame_.times.first_launches : frame_.times.launching;
-    waited += nanosecond * static_cast<double>(std::max<std::int64_t>(times.started - asked, 0));
-    frame_.times.kernels += nanosecond * static_cast<double>(times.ended - std::max(times.started, last_end_));
-    last_end_ = times.ended;
+    waited += nanosecond * static_cast<double>(std::max<std::int64_t>(launch.started - asked, 0));
+    frame_.times.kernels += nanosecond * static_cast<double>(launch.ended - std::max(launch.started, last_end_));
+    last_end_ = launch.ended;
 }
 
 void Profiler::count_wave(const profile::Wave& wave) {
@@ -192,7 +190,7 @@ std::uint64_t Profiler::capacity_after(const Launch& launch) const {
     }
 }
 
-profile::StageTotal& Profiler::total_of(Stage stage, int depth) {
+profile::StageTotal& Profiler::place_of(Stage stage, int depth) {
     const auto key = [](const profile::StageTotal& total) { return std::pair(total.stage, total.depth); };
     const auto place = std::ranges::lower_bound(frame_.stages, std::pair(stage, depth), {}, key);
     if (place != frame_.stages.end() && key(*place) == std::pair(stage, depth)) return *place;
@@ -203,7 +201,8 @@ profile::StageTotal& Profiler::total_of(Stage stage, int depth) {
 }
 
 profile::FrameProfile Profiler::finish(const Waves& waves) {
-    settle(before_, {}, 0, 0);
+    settle(ended_);
+    settle(wave_);  // of no wave: resolve
     for (profile::DepthTotal& total : frame_.depths) {
         const QueueCounts& counts = waves.counts(total.depth);
         total.capacity = waves.queue_size(total.depth);

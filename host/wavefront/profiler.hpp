@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "profile/profile.hpp"
-#include "wavefront/film_planes.hpp"
 #include "wavefront/stages.hpp"
 #include "wavefront/waves.hpp"
 
@@ -22,7 +21,7 @@ struct ClockReading {
 ClockReading read_clocks(const Device& device);
 
 /// Between waves the profiler holds totals; with Detail::launches every launch and wave too. Calls go in the order
-/// launched ... end_pass ... end_wave, and again for the next wave.
+/// launched ... end_pass ... settle ... end_wave, and again for the next wave.
 class Profiler {
   public:
     struct FrameShape {
@@ -30,16 +29,19 @@ class Profiler {
         std::uint64_t shadow_capacity = 0;  // rays of one pass
         std::size_t passes = 1;             // over the light samples
         int max_depth = 0;
-        FilmPlanes planes;
     };
 
     /// The frame begins. The device must outlive the profiler.
     Profiler(const Device& device, const FrameShape& shape, profile::Detail detail);
 
-    void launched(const LaunchSize& size, const cl::Event& event) { pending_.push_back({size, event}); }
+    void launched(const LaunchSize& size, const cl::Event& event) { wave_.launches.push_back({size, event}); }
 
     /// shade and shadow have been launched for a range of light samples: asks for the counters, without waiting.
     void end_pass(const Buffer<Counters>& counters);
+
+    /// Works out what the last wave did: to be called when this one's kernels are on their way, so that the device need
+    /// not wait for it.
+    void settle();
 
     /// Everything launched so far has finished, and `counters` is what it left. Throws QueueMismatch where the kernels'
     /// counts contradict each other.
@@ -49,27 +51,34 @@ class Profiler {
     profile::FrameProfile finish(const Waves& waves);
 
   private:
-    struct Pending {
+    struct TimedLaunch {
         LaunchSize size;
         cl::Event event;
     };
-    struct Times {
-        std::int64_t queued, submitted, started, ended;  // of the device's clock
+    /// The launches of a wave, and what they left in the counters.
+    struct PendingWave {
+        std::vector<TimedLaunch> launches;
+        std::vector<Counters> passes;  // after each pass; that of the last is `after`
+        Counters before{}, after{};
+        int depth = profile::no_depth;
+        std::uint32_t number = profile::no_wave;
+        profile::Fates fates;
+        std::uint64_t passing = 0;  // hits on surfaces that pass light on
     };
-    void settle(const Counters& counters, profile::Launch launch, std::uint64_t hits, std::uint64_t children);
-    void count(const profile::Launch& launch, const Times& times);
-    void count_gap(const Times& times, bool first_launch);
+    void settle(PendingWave& wave);
+    // Of launches whose times are those of the device's clock.
+    void count(const profile::Launch& launch);
+    void count_gap(const profile::Launch& launch, bool first_launch);
     void count_wave(const profile::Wave& wave);
     std::uint64_t capacity_after(const profile::Launch& launch) const;
-    profile::StageTotal& total_of(profile::Stage stage, int depth);
+    profile::StageTotal& place_of(profile::Stage stage, int depth);
 
     const Device& device_;
     FrameShape shape_;
     profile::FrameProfile frame_;
-    std::vector<Pending> pending_;
-    std::vector<Counters> passes_;  // the counters after each pass of this wave but the last
+    PendingWave wave_;   // that is being launched
+    PendingWave ended_;  // that has run, but was not settled yet
     std::size_t pass_ = 0;
-    Counters before_{};  // the counters when this wave began
     std::uint32_t waves_ = 0;
     std::int64_t start_;  // of the frame, host
     ClockReading clocks_;

@@ -135,12 +135,13 @@ void Renderer::start(profile::Detail detail) {
     profiler_.reset();
     if (detail != profile::Detail::none) {
         const Profiler::FrameShape shape{plan_.queue_capacity, shadow_queue_.rays.size(), slot_ranges_.size(),
-                                         max_depth_, planes_};
+                                         max_depth_};
         profiler_.emplace(device_, shape, detail);
         stages_.observe([this](const LaunchSize& size, const cl::Event& e) { profiler_->launched(size, e); });
     }
     make_ready();
     ready_ = false;
+    film_.counted = profiler_.has_value();
     counts_ = {};
     waves_.start();
 }
@@ -220,7 +221,6 @@ void Renderer::trace(const Batch& batch) {
         if (profiler_) profiler_->end_pass(film_.counters);
     }
     if (planes_.any_feature()) stages_.features(device_scene_, rays, static_cast<uint>(batch.depth), hits_, film_);
-    if (profiler_) stages_.tally(device_scene_, hits_, batch.count, film_);
     const bool goes_deeper = batch.depth < max_depth_;
     if (goes_deeper) {
         Buffer<Ray>& children = queues_[static_cast<std::size_t>(batch.depth) + 1];
@@ -230,6 +230,7 @@ void Renderer::trace(const Batch& batch) {
         device_.queue.finish();
         return;
     }
+    if (profiler_) profiler_->settle();
     const Counters counters = film_.counters.read_one(device_);
     if (goes_deeper) take_children(batch, counters.children);
     if (profiler_) profiler_->end_wave(batch, counters);

@@ -12,7 +12,6 @@ namespace {
 
 const std::vector<std::string> kernel_files = {"generate.cl", "intersect.cl", "shade.cl",
                                                "shadow.cl",   "secondary.cl", "resolve.cl"};
-const std::vector<std::string> extra_files = {"features.cl", "tally.cl"};
 
 // Kernels of one item a work-item want groups that fill the vector units; those that loop over a chunk want none
 // (PoCL replicates their stacks for each work-item of a group).
@@ -33,7 +32,30 @@ cl_ulong argument(std::uint64_t value) {
     return value;
 }
 
+uint film_flags(const Film& film) {
+    return (film.pixels_once ? FILM_PIXELS_ONCE : 0) | (film.counted ? FILM_COUNTED : 0);
+}
+
 }  // namespace
+
+std::uint64_t atomics_of(const Counters& counters, profile::Stage stage) {
+    switch (stage) {
+        case profile::Stage::intersect:
+            return counters.atomics[ATOMICS_INTERSECT];
+        case profile::Stage::shade:
+            return counters.atomics[ATOMICS_SHADE];
+        case profile::Stage::shadow:
+            return counters.atomics[ATOMICS_SHADOW];
+        case profile::Stage::features:
+            return counters.atomics[ATOMICS_FEATURES];
+        case profile::Stage::secondary:
+            return counters.atomics[ATOMICS_SECONDARY];
+        case profile::Stage::generate:
+        case profile::Stage::resolve:
+            break;
+    }
+    return 0;
+}
 
 Stages::Stages(const Device& device, std::size_t work_group, const std::string& kernel_dir, Traversal traversal)
     : device_(device),
@@ -70,26 +92,23 @@ Stages::Stage Stages::chunk_stage(const cl::Program& program, profile::Stage nam
             CHUNK};
 }
 
-void Stages::build_extras() {
-    if (features_) return;
-    const cl::Program program = build(extra_files);
-    features_ = chunk_stage(program, profile::Stage::features);
-    tally_ = chunk_stage(program, profile::Stage::tally);
+void Stages::build_features() {
+    if (!features_) features_ = chunk_stage(build({"features.cl"}), profile::Stage::features);
 }
 
 template <class... Arguments>
-void Stages::launch(Stage& stage, uint work_items, uint items, const Arguments&... arguments) {
-    if (work_items == 0 && !runs_empty_launches_) return;
+void Stages::launch(Stage& stage, const Work& work, const Arguments&... arguments) {
+    if (work.work_items == 0 && !runs_empty_launches_) return;
     try {
         cl_uint index = 0;
         (stage.kernel.setArg(index++, argument(arguments)), ...);
-        const std::size_t groups = (std::max(work_items, 1u) + stage.local_size - 1) / stage.local_size;
+        const std::size_t groups = (std::max(work.work_items, 1u) + stage.local_size - 1) / stage.local_size;
         cl::Event event;
         device_.queue.enqueueNDRangeKernel(stage.kernel, cl::NullRange, cl::NDRange(groups * stage.local_size),
                                            cl::NDRange(stage.local_size), nullptr, observer_ ? &event : nullptr);
         if (observer_) {
             const std::uint64_t places = std::uint64_t{groups} * stage.local_size * stage.items;
-            observer_({stage.name, items, work_items, groups, places}, event);
+            observer_({stage.name, work.items, work.work_items, groups, places, work.segments}, event);
         }
     } catch (const cl::Error& error) {
         throw DeviceError(fmt::format("kernel {}: {} failed: {} ({})", profile::stage_name(stage.name), error.what(),
@@ -98,53 +117,48 @@ void Stages::launch(Stage& stage, uint work_items, uint items, const Arguments&.
 }
 
 void Stages::generate(const DeviceScene& scene, std::uint64_t first_sample, uint count, Buffer<Ray>& rays) {
-    launch(generate_, chunks(count), count, first_sample, count, scene.camera, rays);
+    launch(generate_, {chunks(count), count}, first_sample, count, scene.camera, rays);
 }
 
 void Stages::intersect(const DeviceScene& scene, QueueRange<Ray> rays, Buffer<Hit>& hits, Film& film) {
-    launch(intersect_, (rays.count + intersect_.items - 1) / intersect_.items, rays.count, rays.items, rays.first,
+    launch(intersect_, {(rays.count + intersect_.items - 1) / intersect_.items, rays.count}, rays.items, rays.first,
            rays.count, scene.nodes, scene.triangle_blocks, scene.sphere_blocks, scene.planes, scene.textures,
-           scene.texels, scene.constants, hits, film.sums, film.counters, film.pixels_once);
+           scene.texels, scene.constants, hits, film.sums, film.counters, film_flags(film));
 }
 
 void Stages::shade(const DeviceScene& scene, QueueRange<Ray> rays, const Buffer<Hit>& hits, SlotRange slots,
                    ShadowQueue& shadow_rays, Film& film) {
-    launch(shade_, chunks(rays.count), rays.count, rays.items, rays.first, rays.count, hits, slots.first, slots.count,
-           scene.light_slots, scene.lights, scene.vertices, scene.triangles, scene.spheres, scene.planes,
-           scene.materials, scene.textures, scene.texels, scene.constants, shadow_rays.rays, shadow_rays.counts,
-           film.sums, film.counters, film.pixels_once);
+    launch(shade_, {chunks(rays.count), rays.count, chunks(rays.count) * slots.count}, rays.items, rays.first,
+           rays.count, hits, slots.first, slots.count, scene.light_slots, scene.lights, scene.vertices, scene.triangles,
+           scene.spheres, scene.planes, scene.materials, scene.textures, scene.texels, scene.constants,
+           shadow_rays.rays, shadow_rays.counts, film.sums, film.counters, film_flags(film));
 }
 
 void Stages::features(const DeviceScene& scene, QueueRange<Ray> rays, uint depth, const Buffer<Hit>& hits, Film& film) {
-    build_extras();
-    launch(*features_, chunks(rays.count), rays.count, rays.items, rays.first, rays.count, depth, hits, scene.vertices,
-           scene.triangles, scene.spheres, scene.planes, scene.materials, scene.textures, scene.texels, scene.camera,
-           scene.constants, film.sums, film.counters, film.pixels_once);
+    build_features();
+    launch(*features_, {chunks(rays.count), rays.count}, rays.items, rays.first, rays.count, depth, hits,
+           scene.vertices, scene.triangles, scene.spheres, scene.planes, scene.materials, scene.textures, scene.texels,
+           scene.camera, scene.constants, film.sums, film.counters, film_flags(film));
 }
 
 void Stages::shadow(const DeviceScene& scene, const ShadowQueue& shadow_rays, uint segments, Film& film) {
-    launch(shadow_, segments * (CHUNK / shadow_.items), segments * CHUNK, shadow_rays.rays, shadow_rays.counts,
-           segments, scene.nodes, scene.triangle_blocks, scene.sphere_blocks, scene.planes, scene.triangles,
-           scene.spheres, scene.materials, scene.constants, film.sums, film.counters, film.pixels_once);
+    launch(shadow_, {segments * (CHUNK / shadow_.items), segments * CHUNK, segments}, shadow_rays.rays,
+           shadow_rays.counts, segments, scene.nodes, scene.triangle_blocks, scene.sphere_blocks, scene.planes,
+           scene.triangles, scene.spheres, scene.materials, scene.constants, film.sums, film.counters,
+           film_flags(film));
 }
 
 void Stages::secondary(const DeviceScene& scene, QueueRange<Ray> rays, const Buffer<Hit>& hits, Buffer<Ray>& children,
                        Film& film) {
     const uint capacity = static_cast<uint>(children.size());
-    launch(secondary_, chunks(rays.count), rays.count, rays.items, rays.first, rays.count, hits, scene.vertices,
+    launch(secondary_, {chunks(rays.count), rays.count}, rays.items, rays.first, rays.count, hits, scene.vertices,
            scene.triangles, scene.spheres, scene.planes, scene.materials, scene.textures, scene.texels, scene.constants,
-           children, capacity, film.counters);
-}
-
-void Stages::tally(const DeviceScene& scene, const Buffer<Hit>& hits, uint count, Film& film) {
-    build_extras();
-    launch(*tally_, chunks(count), count, hits, count, scene.triangles, scene.spheres, scene.planes, scene.materials,
-           scene.constants, film.counters);
+           children, capacity, film.counters, film.counted);
 }
 
 void Stages::resolve(const Film& film, uint spp, Buffer<float>& pixels) {
     const uint count = static_cast<uint>(pixels.size());
-    launch(resolve_, count, count, film.sums, count, spp, pixels);
+    launch(resolve_, {count, count}, film.sums, count, spp, pixels);
 }
 
 }  // namespace raymill

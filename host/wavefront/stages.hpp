@@ -32,6 +32,8 @@ struct Film {
     Buffer<Counters> counters;
     /// No two items of the launches to come have the same pixel, so that they need not add atomically.
     bool pixels_once = false;
+    /// The kernels count for a profile, too: see Counters.
+    bool counted = false;
 };
 
 /// Film::pixels_once of launches on rays of this depth: camera rays of one sample a pixel have each its own. slots:
@@ -39,6 +41,9 @@ struct Film {
 inline bool pixels_once(int depth, int spp, uint slots = 1) {
     return depth == 0 && spp == 1 && slots == 1;
 }
+
+/// Atomic operations that this kernel has counted; none for kernels that issue none.
+std::uint64_t atomics_of(const Counters& counters, profile::Stage stage);
 
 /// Light samples [first, first + count) of the scene's list.
 struct SlotRange {
@@ -53,6 +58,7 @@ struct LaunchSize {
     std::uint64_t work_items;
     std::uint64_t groups;
     std::uint64_t places;
+    std::uint64_t segments;  // of shadow rays: that shade writes, or shadow reads
 };
 
 /// Called after each launch with its event, where launches are to be timed. items of shadow are the places of its
@@ -85,8 +91,6 @@ class Stages {
     /// Counts its children in film.counters.children, from the value it finds there.
     void secondary(const DeviceScene& scene, QueueRange<Ray> rays, const Buffer<Hit>& hits, Buffer<Ray>& children,
                    Film& film);
-    /// Adds to film.counters.missed and passing.
-    void tally(const DeviceScene& scene, const Buffer<Hit>& hits, uint count, Film& film);
     void resolve(const Film& film, uint spp, Buffer<float>& pixels);
 
     static uint chunks(uint items) { return (items + CHUNK - 1) / CHUNK; }
@@ -98,11 +102,17 @@ class Stages {
         std::size_t local_size;
         uint items;  // of a work-item
     };
+    /// What a launch is to work on: see LaunchSize.
+    struct Work {
+        uint work_items = 0;
+        uint items = 0;
+        uint segments = 0;
+    };
     cl::Program build(const std::vector<std::string>& files) const;
     Stage chunk_stage(const cl::Program& program, profile::Stage name) const;
-    void build_extras();
+    void build_features();
     template <class... Arguments>
-    void launch(Stage& stage, uint work_items, uint items, const Arguments&... arguments);
+    void launch(Stage& stage, const Work& work, const Arguments&... arguments);
 
     const Device& device_;
     std::size_t work_group_;
@@ -111,7 +121,7 @@ class Stages {
     LaunchObserver observer_;
     bool runs_empty_launches_ = false;
     Stage generate_, intersect_, shade_, shadow_, secondary_, resolve_;
-    std::optional<Stage> features_, tally_;  // most frames need neither: built when first launched
+    std::optional<Stage> features_;  // most frames do not need it: built when first launched
 };
 
 }  // namespace raymill

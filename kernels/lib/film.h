@@ -9,8 +9,28 @@ typedef struct {
     global long* sums;
     global Counters* counters;
     constant SceneConstants* constants;
-    bool pixels_once;  // no two items of the launch have the same pixel, so that plain adds do
+    uint flags;         // FILM_PIXELS_ONCE ...
+    uint kernel_place;  // in Counters::atomics
 } Film;
+
+// What adds returns how many atomic operations it issued; the kernel hands their number to film_count_atomics(). In the
+// struct it would lie in memory, and a store between two atomic operations holds them up.
+
+/// Adds to one of the counters that every frame needs, unless there is nothing to add.
+static inline uint film_count(global ulong* counter, uint number) {
+    if (number == 0) return 0;
+    atom_add(counter, (ulong)number);
+    return 1;
+}
+
+/// Adds to one of those that only the profile needs.
+static inline void film_profile(const Film* film, global ulong* counter, uint number) {
+    if ((film->flags & FILM_COUNTED) && number != 0) atom_add(counter, (ulong)number);
+}
+
+static inline void film_count_atomics(const Film* film, uint number) {
+    film_profile(film, film->counters->atomics + film->kernel_place, number);
+}
 
 /// The pixel's channels of a plane that is kept.
 static inline global long* film_pixel(const Film* film, uint plane, uint pixel) {
@@ -24,6 +44,7 @@ static inline bool film_keeps(const Film* film, uint plane) {
 /// What is stored of a value that the film does not hold: nothing of NaN, FILM_LIMIT of what is beyond it. Both are
 /// counted.
 static float film_cut(const Film* film, float value) {
+    film_count_atomics(film, 1);  // hardly ever: not worth a register everywhere
     if (isnan(value)) {
         atom_inc(&film->counters->not_a_number);
         return 0.0f;
@@ -54,37 +75,39 @@ static inline long4 film_units4(const Film* film, float4 value) {
     return *(const long4*)&units;
 }
 
-static inline void film_add_units(const Film* film, global long* sum, long units) {
-    if (units == 0) return;
+static inline uint film_add_units(const Film* film, global long* sum, long units) {
+    if (units == 0) return 0;
+    const bool plain = (film->flags & FILM_PIXELS_ONCE) != 0;
     long before;
-    if (film->pixels_once) {
+    if (plain) {
         before = *sum;
         *sum = (long)((ulong)before + (ulong)units);
     } else {
         before = atom_add(sum, units);
     }
     const long after = (long)((ulong)before + (ulong)units);
-    if (((before ^ after) & (units ^ after)) < 0) atom_inc(&film->counters->saturated);
+    if (((before ^ after) & (units ^ after)) < 0) film_count_atomics(film, film_count(&film->counters->saturated, 1));
+    return plain ? 0 : 1;
 }
 
 /// Adds to all four channels of a pixel.
-static inline void film_add_units4(const Film* film, global long* sum, long4 units) {
-    if (film->pixels_once) {
+static inline uint film_add_units4(const Film* film, global long* sum, long4 units) {
+    if (film->flags & FILM_PIXELS_ONCE) {
         const ulong4 before = *(global const ulong4*)sum, after = before + as_ulong4(units);
         *(global ulong4*)sum = after;
         const long4 overflow = as_long4((before ^ after) & (as_ulong4(units) ^ after)) < 0;
-        if ((overflow.x | overflow.y | overflow.z | overflow.w) != 0)
-            atom_sub(&film->counters->saturated, (ulong)(overflow.x + overflow.y + overflow.z + overflow.w));
-    } else {
-        film_add_units(film, sum + 0, units.x);
-        film_add_units(film, sum + 1, units.y);
-        film_add_units(film, sum + 2, units.z);
-        film_add_units(film, sum + 3, units.w);
+        const long overflows = -(overflow.x + overflow.y + overflow.z + overflow.w);
+        if (overflows != 0) film_count_atomics(film, film_count(&film->counters->saturated, (uint)overflows));
+        return 0;
     }
+    uint atomics = film_add_units(film, sum + 0, units.x);
+    atomics += film_add_units(film, sum + 1, units.y);
+    atomics += film_add_units(film, sum + 2, units.z);
+    return atomics + film_add_units(film, sum + 3, units.w);
 }
 
-static inline void film_add(const Film* film, uint plane, uint pixel, float4 value) {
-    film_add_units4(film, film_pixel(film, plane, pixel), film_units4(film, value));
+static inline uint film_add(const Film* film, uint plane, uint pixel, float4 value) {
+    return film_add_units4(film, film_pixel(film, plane, pixel), film_units4(film, value));
 }
 
 /// The plane that light of this kind belongs to: `term` for camera hits, else that of the branch which the path took
@@ -110,7 +133,7 @@ static inline void terms_put(Terms* terms, uint pixel, uint route, float3 first,
 
 /// Adds the radiance of two terms. The beauty gets the sum of their integers, so that the planes still add up to it.
 /// Leaves none.
-static inline void film_add_terms(const Film* film, uint first_term, uint second_term, Terms* terms) {
+static inline uint film_add_terms(const Film* film, uint first_term, uint second_term, Terms* terms) {
     union {
         long16 part[4];
         long4 row[LANES];
@@ -123,17 +146,19 @@ static inline void film_add_terms(const Film* film, uint first_term, uint second
         first.part[i] = film_units(film, terms->first.part[i]);
         both.part[i] = first.part[i] + film_units(film, terms->second.part[i]);
     }
+    uint atomics = 0;
     for (uint i = 0; i < terms->count; ++i) {
         const uint pixel = terms->pixel[i];
-        film_add_units4(film, film_pixel(film, FILM_BEAUTY, pixel), both.row[i]);
+        atomics += film_add_units4(film, film_pixel(film, FILM_BEAUTY, pixel), both.row[i]);
         if (!by_term) continue;
         const uint plane_a = film_plane(first_term, terms->route[i]),
                    plane_b = film_plane(second_term, terms->route[i]);
-        if (film_keeps(film, plane_a)) film_add_units4(film, film_pixel(film, plane_a, pixel), first.row[i]);
+        if (film_keeps(film, plane_a)) atomics += film_add_units4(film, film_pixel(film, plane_a, pixel), first.row[i]);
         if (film_keeps(film, plane_b))
-            film_add_units4(film, film_pixel(film, plane_b, pixel), both.row[i] - first.row[i]);
+            atomics += film_add_units4(film, film_pixel(film, plane_b, pixel), both.row[i] - first.row[i]);
     }
     terms->count = 0;
+    return atomics;
 }
 
 #endif

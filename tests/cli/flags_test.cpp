@@ -50,7 +50,7 @@ TEST_F(Flags, that_make_no_sense_are_refused_by_name) {
         {"--crop", "nan,1,0,1"},   {"--mem-limit", "lots"},   {"--mem-limit", "12Q"}, {"--mem-limit", "0"},
         {"--mem-limit", "-5M"},    {"--mem-limit", ""},       {"--spp", "0"},         {"--depth", "-1"},
         {"--queue-capacity", "0"}, {"--work-group", "0"},     {"--threads", "0"},     {"--integrator", "magic"},
-        {"--exposure", "inf"},     {"--seed", "-1"},          {"--bvh", "best"},    {"--bvh", ""}};
+        {"--exposure", "inf"},     {"--seed", "-1"},          {"--bvh", "best"},      {"--bvh", ""}};
     for (const auto& flag : senseless) {
         SCOPED_TRACE(flag[0] + " '" + flag[1] + "'");
         // With an equals sign, so that a value that begins with a minus is one.

@@ -72,10 +72,9 @@ TEST_F(ReportInBrowser, shows_every_figure_with_a_table_behind_it) {
 
 TEST_F(ReportInBrowser, draws_an_interrupted_sweep_and_says_so) {
     sweep({"--queue-capacity", "64,256,1k"});
-    // As an interrupt leaves it: one setting without its profile, one never reached, no timeline.
+    // As an interrupt leaves it: one setting never reached, and the timeline of another than the best.
     json_["complete"] = false;
-    json_["timeline"] = nullptr;
-    json_["settings"][1]["profile"] = nullptr;
+    json_["timeline"]["setting"] = 0;
     Json unreached = json_["settings"][2];
     for (const char* key : {"rays", "rays_per_second", "seconds", "frames", "profile"}) unreached.erase(key);
     unreached["state"] = "not_reached";
@@ -93,7 +92,7 @@ TEST_F(ReportInBrowser, draws_an_interrupted_sweep_and_says_so) {
     EXPECT_TRUE(contains(dom, "This report is partial.") && contains(dom, "2 of its 3 settings have all 2 frames"))
         << dom;
     EXPECT_TRUE(contains(dom, "<figure id=\"throughput\"") && contains(dom, "<figure id=\"stages\""));
-    EXPECT_TRUE(contains(dom, "The sweep was interrupted before its last frame"));
+    EXPECT_TRUE(contains(dom, "One frame with 64 rays"));
 }
 
 TEST_F(ReportInBrowser, has_no_error) {

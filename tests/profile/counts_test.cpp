@@ -165,6 +165,22 @@ INSTANTIATE_TEST_SUITE_P(Profile, Counts,
                                          std::pair<std::uint64_t, std::size_t>{70, 8}),
                          [](const auto& info) { return "capacity_" + std::to_string(info.param.first); });
 
+TEST(Counts, of_bytes_do_not_depend_on_how_rays_are_traced) {
+    const ProfiledScene scene;
+    RenderOptions options;
+    options.memory.queue_capacity = 256;
+    const auto frame_of = [&](Traversal traversal) {
+        options.traversal = traversal;
+        return Renderer(scene.device, scene.scene, scene.bvh, options).render({}, Detail::totals).profile;
+    };
+    const profile::FrameProfile packet = frame_of(Traversal::packet), single = frame_of(Traversal::single);
+    for (std::size_t i = 0; i < profile::stage_count; ++i) {
+        const auto stage = static_cast<Stage>(i);
+        EXPECT_EQ(single.total(stage).traffic.bytes_read, packet.total(stage).traffic.bytes_read) << i;
+        EXPECT_EQ(single.total(stage).traffic.bytes_written, packet.total(stage).traffic.bytes_written) << i;
+    }
+}
+
 /// A copy of the kernels in which `right` reads `wrong`.
 void falsify(const std::filesystem::path& folder, const std::string& file, const std::string& right,
              const std::string& wrong) {
@@ -177,8 +193,8 @@ void falsify(const std::filesystem::path& folder, const std::string& file, const
 
 TEST(FalsifiedCounts, of_shadow_rays_fail_every_frame) {
     const TemporaryFolder folder;
-    falsify(folder.path() / "kernels", "shadow.cl", "&counters->shadow_traced, (ulong)count",
-            "&counters->shadow_traced, (ulong)count - 1");
+    falsify(folder.path() / "kernels", "shadow.cl", "&counters->shadow_traced, count)",
+            "&counters->shadow_traced, count - 1)");
     ProfiledScene scene(256, 0, folder.file("kernels"));
     EXPECT_THROW(scene.renderer->render(), QueueMismatch);
 }

@@ -30,10 +30,9 @@ TEST(Json, has_the_documented_keys) {
               (Keys{"format", "run", "times", "compiled_kernels", "stages", "depths", "waves", "launches"}));
     EXPECT_EQ(keys_of(json["times"]), (Keys{"wall", "not_measured", "spans", "frame"}));
     EXPECT_EQ(keys_of(json["times"]["frame"]), (Keys{"seconds", "kernels", "first_launches", "launching", "host"}));
-    EXPECT_EQ(keys_of(json["stages"][0]),
-              (Keys{"stage", "launches", "items_in", "items_out", "capacity", "high_water", "work_items", "groups",
-                    "places", "fullness", "seconds", "shortest", "longest", "bytes_read", "bytes_written",
-                    "atomics_at_most", "depths"}));
+    EXPECT_EQ(keys_of(json["stages"][0]), (Keys{"stage", "launches", "items_in", "items_out", "capacity", "high_water",
+                                                "work_items", "groups", "places", "fullness", "seconds", "shortest",
+                                                "longest", "bytes_read", "bytes_written", "atomics", "depths"}));
     EXPECT_EQ(keys_of(json["depths"][0]), (Keys{"depth", "capacity", "high_water", "pushed", "popped", "waves", "fates",
                                                 "shadow_rays", "shadow_blocked"}));
     EXPECT_EQ(keys_of(json["depths"][0]["fates"]),
@@ -86,6 +85,18 @@ TEST(Trace, has_a_complete_event_for_every_launch_and_span) {
     EXPECT_EQ(device[1]["ts"], 1012.0);
     EXPECT_EQ(device[1]["dur"], 7.0);
     EXPECT_EQ(device[1]["args"]["items out"], 70);
+    EXPECT_EQ(device[1]["args"]["atomics"], 150);
+}
+
+TEST(Trace, names_its_process_and_tracks_and_leaves_the_unit_of_time_alone) {
+    std::ostringstream text;
+    write_trace(text, run_example());
+    const Json trace = Json::parse(text.str());
+    EXPECT_EQ(keys_of(trace), Keys{"traceEvents"}) << "Perfetto may take displayTimeUnit for the unit of the times";
+    std::vector<std::string> names;
+    for (const Json& event : trace["traceEvents"])
+        if (event["ph"] == "M") names.push_back(event["args"]["name"]);
+    EXPECT_EQ(names, (std::vector<std::string>{"raymill example.toml", "host", "an abacus"}));
 }
 
 TEST(Trace, follows_the_fill_of_every_queue_back_to_zero) {

@@ -27,14 +27,16 @@ SweepSetting setting_of(std::uint64_t capacity, std::uint64_t work_group, const 
 }
 
 Sweep sweep_example() {
+    const RunProfile run = run_example();
     Sweep sweep;
     sweep.version = "1.2.3";
-    sweep.scene = "example.toml";
-    sweep.width = sweep.height = 10;
+    sweep.scene = run.scene;
+    sweep.width = run.width;
+    sweep.height = run.height;
     sweep.samples_per_pixel = 3;
     sweep.scene_samples_per_pixel = 16;
     sweep.samples_chosen = true;
-    sweep.device = "an abacus";
+    sweep.device = run.device;
     sweep.device_memory = 1 << 30;
     sweep.caches = {{"L1d", 16384, 1}, {"L2", 40960, 2}};
     sweep.repeats = 2;
@@ -44,7 +46,7 @@ Sweep sweep_example() {
                       setting_of(128, 8, {14.5e-6, 15.5e-6})};
     sweep.settings[3].skipped = "the frame needs 3 GiB";
     sweep.settings[3].profile.reset();
-    sweep.timeline = run_example();
+    sweep.timeline = run;
     sweep.timeline_setting = 2;
     return sweep;
 }

@@ -1,4 +1,4 @@
-// Bytes and atomics that follow from the counts, by hand: a Ray has 52 bytes, a Hit 16, a ShadowRay 64.
+// Totals over launches, and bytes that follow from the counts, by hand: a Ray has 52 bytes, a Hit 16, a ShadowRay 64.
 #include <gtest/gtest.h>
 
 #include "run_example.hpp"
@@ -28,8 +28,8 @@ TEST(FrameProfile, adds_up_over_depths) {
 TEST(Traffic, counts_each_item_for_every_launch_that_moves_it) {
     const FrameProfile frame = run_example().frame;
     const auto expect = [&](Stage stage, std::uint64_t read, std::uint64_t written) {
-        EXPECT_EQ(traffic(frame, stage).bytes_read, read) << stage_name(stage);
-        EXPECT_EQ(traffic(frame, stage).bytes_written, written) << stage_name(stage);
+        EXPECT_EQ(frame.total(stage).traffic.bytes_read, read) << stage_name(stage);
+        EXPECT_EQ(frame.total(stage).traffic.bytes_written, written) << stage_name(stage);
     };
     expect(Stage::generate, 0, 100 * 52);
     expect(Stage::intersect, 160 * 52, 160 * 16);
@@ -40,14 +40,33 @@ TEST(Traffic, counts_each_item_for_every_launch_that_moves_it) {
     expect(Stage::features, 0, 0);
 }
 
-TEST(Traffic, bounds_atomics_by_the_planes_that_are_kept) {
-    FrameProfile frame = run_example().frame;
-    EXPECT_EQ(traffic(frame, Stage::intersect).atomics_at_most, 70u + 90 * 3);
-    EXPECT_EQ(traffic(frame, Stage::shadow).atomics_at_most, 125u * 6 + 2 * 4);
-    frame.film_adds = {6, 4, 0, 0};
-    EXPECT_EQ(traffic(frame, Stage::intersect).atomics_at_most, 70u + 90 * 6);
-    EXPECT_EQ(traffic(frame, Stage::shadow).atomics_at_most, 125u * 12 + 140 * 4 + 2 * 4);
-    EXPECT_EQ(traffic(frame, Stage::generate).atomics_at_most, 0u);
+TEST(Traffic, adds_up_over_launches_and_depths) {
+    const FrameProfile frame = run_example().frame;
+    EXPECT_EQ(frame.total(Stage::intersect).traffic.atomics, 150u + 180);
+    EXPECT_EQ(frame.total(Stage::shadow).traffic.atomics, 3u * (60 + 65));
+    for (std::size_t i = 0; i < stage_count; ++i) {
+        Traffic sum;
+        for (const Launch& launch : frame.launches)
+            if (launch.stage == static_cast<Stage>(i)) sum += launch.traffic;
+        EXPECT_EQ(frame.total(static_cast<Stage>(i)).traffic, sum) << stage_name(static_cast<Stage>(i));
+    }
+}
+
+TEST(StageTotal, of_launches_has_the_shortest_the_longest_and_the_fullest) {
+    Launch launch;
+    launch.items_out = 5;
+    launch.ended = 3000;
+    StageTotal total = total_of(launch, 7);
+    launch.items_out = 4;
+    launch.ended = 1000;
+    total += total_of(launch, 7);
+    EXPECT_EQ(total.launches, 2u);
+    EXPECT_EQ(total.items_out, 9u);
+    EXPECT_EQ(total.high_water, 5u);
+    EXPECT_EQ(total.capacity, 7u);
+    EXPECT_DOUBLE_EQ(total.shortest, 1e-6);  // one product of doubles
+    EXPECT_DOUBLE_EQ(total.longest, 3e-6);
+    EXPECT_DOUBLE_EQ(total.seconds, 4e-6);
 }
 
 }  // namespace

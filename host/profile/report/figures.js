@@ -1,12 +1,12 @@
 // The figures, each a function of the sweep and of the series that is shown: settings that differ in capacity alone.
 
-const stageNames = ['generate', 'intersect', 'shade', 'shadow', 'features', 'tally', 'secondary', 'resolve'];
+const stageNames = ['generate', 'intersect', 'shade', 'shadow', 'features', 'secondary', 'resolve'];
 const idleParts = [
     ['first_launches', 'first launches', 'var(--first)'], ['launching', 'launching, device idle', 'var(--launching)'],
     ['host', 'host, device idle', 'var(--host)']
 ];
 const fateParts = [
-    ['missed', 'left the scene', 'var(--generate)'], ['absorbed', 'absorbed', 'var(--tally)'],
+    ['missed', 'left the scene', 'var(--generate)'], ['absorbed', 'absorbed', 'var(--absorbed)'],
     ['depth_limit', 'ended by the depth limit', 'var(--resolve)'], ['weightless', 'too little weight', 'var(--shade)'],
     ['one_child', 'one child', 'var(--shadow)'], ['two_children', 'two children', 'var(--secondary)']
 ];

@@ -73,10 +73,10 @@ function showTiles() {
 }
 
 function showFigures(key) {
-    const settings = allSeries().get(key).filter(setting => setting.profile);
-    const bySeries = settings.length ? [stageFigure(settings), fillFigure(settings), groupFigure(settings)] : [];
+    const settings = allSeries().get(key);
     fill('figures', [
-        throughputFigure(), ...bySeries, memoryFigure(), ...best.profile ? [fatesFigure()] : [], timelineFigure()
+        throughputFigure(), stageFigure(settings), fillFigure(settings), groupFigure(settings), memoryFigure(),
+        fatesFigure(), timelineFigure()
     ].join(''));
 }
 

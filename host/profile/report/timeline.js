@@ -77,9 +77,6 @@ function oneBatch(launches) {
 
 function timelineFigure() {
     const title = 'A frame in time';
-    if (!sweep.timeline)
-        return figure(
-            'timeline', title, 'The sweep was interrupted before its last frame, which records every launch.', '', '');
     const launches = launchesOf(sweep.timeline.profile), batch = oneBatch(launches);
     const setting = sweep.settings[sweep.timeline.setting];
     const left = sweep.timeline.launches_left_out;
