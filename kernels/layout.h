@@ -49,6 +49,7 @@ enum {
 // Argument `film_flags` of the kernels that write the film.
 #define FILM_PIXELS_ONCE 1u  // no two items of the launch have the same pixel, so that plain adds do
 #define FILM_COUNTED 2u      // the frame is profiled: see Counters
+#define FILM_PASS_SHIFT 2u   // from here on: which of the buffer's Counters the launch adds to
 
 // A single contribution to the film is cut at this radiance; sums may reach 2^31.
 #define FILM_LIMIT 16777216.0f

@@ -26,6 +26,7 @@ kernel void shade(global const Ray* rays, uint first_ray, uint count, global con
                   global const Plane* planes, global const Material* materials, global const Texture* textures,
                   global const float* texels, constant SceneConstants* constants, global ShadowRay* shadow_rays,
                   global uint* shadow_counts, global long* film_sums, global Counters* counters, uint film_flags) {
+    counters += film_flags >> FILM_PASS_SHIFT;
     const Film film = {film_sums, counters, constants, film_flags, ATOMICS_SHADE};
     const World world = {vertices, triangles, spheres, planes, materials, textures, texels, constants};
     const uint chunk = get_global_id(0);

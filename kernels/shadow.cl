@@ -14,6 +14,7 @@ kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shado
                    global const Triangle* triangles, global const Sphere* spheres, global const Material* materials,
                    constant SceneConstants* constants, global long* film_sums, global Counters* counters,
                    uint film_flags) {
+    counters += film_flags >> FILM_PASS_SHIFT;
     const Film film = {film_sums, counters, constants, film_flags, ATOMICS_SHADOW};
     const Geometry geometry = scene_geometry(nodes, triangle_blocks, sphere_blocks, planes, constants);
     const World world = {0, triangles, spheres, planes, materials, 0, 0, constants};

@@ -85,35 +85,30 @@ Profiler::Profiler(const Device& device, const FrameShape& shape, Detail detail)
     : device_(device), shape_(shape), start_(profile::now()), clocks_(read_clocks(device)) {
     frame_.detail = detail;
     frame_.shadow_capacity = shape.shadow_capacity;
-    wave_.passes.resize(shape.passes);
-    ended_.passes.resize(shape.passes);
+    wave_.before.resize(shape.passes);
     for (int depth = 0; depth <= shape.max_depth; ++depth) frame_.depths.emplace_back().depth = depth;
 }
 
-void Profiler::end_pass(const Buffer<Counters>& counters) {
-    if (pass_ + 1 < shape_.passes)  // the last one's are what the wave leaves
-        device_.queue.enqueueReadBuffer(counters.memory(), CL_FALSE, 0, sizeof(Counters), &wave_.passes[pass_]);
-    ++pass_;
-}
-
-void Profiler::end_wave(const Batch& batch, const Counters& counters) {
-    const Counters& before = wave_.before;
+void Profiler::end_wave(const Batch& batch, std::span<const Counters> counters) {
+    const Counters &before = wave_.before.front(), &after = counters.front();
     const bool last_depth = batch.depth == shape_.max_depth;
-    const std::uint64_t children = last_depth ? 0 : counters.children;
-    wave_.passing = counters.passing - before.passing;
-    wave_.fates = fates_of(batch.count, last_depth, counters.missed - before.missed, wave_.passing,
-                           counters.parents - before.parents, children);
-    count_wave({batch.depth, batch.count, wave_.fates, counters.shadow_rays - before.shadow_rays,
-                counters.shadow_blocked - before.shadow_blocked});
-    wave_.after = counters;
+    wave_.passing = after.passing - before.passing;
+    wave_.fates = fates_of(batch.count, last_depth, after.missed - before.missed, wave_.passing,
+                           after.parents - before.parents, last_depth ? 0 : after.children);
+    profile::Wave wave{batch.depth, batch.count, wave_.fates};
+    for (std::size_t pass = 0; pass < counters.size(); ++pass) {
+        wave.shadow_rays += counters[pass].shadow_rays - wave_.before[pass].shadow_rays;
+        wave.shadow_blocked += counters[pass].shadow_blocked - wave_.before[pass].shadow_blocked;
+    }
+    count_wave(wave);
+    wave_.after.assign(counters.begin(), counters.end());
     wave_.depth = batch.depth;
     wave_.number = waves_++;
     settle();  // unless that has been done
     std::swap(wave_, ended_);
-    wave_.before = counters;
+    wave_.before = ended_.after;
     wave_.depth = profile::no_depth;
     wave_.number = profile::no_wave;
-    pass_ = 0;
 }
 
 void Profiler::settle() {
@@ -121,14 +116,13 @@ void Profiler::settle() {
 }
 
 void Profiler::settle(PendingWave& wave) {
-    wave.passes.back() = wave.after;
-    Counters before = wave.before;
     std::size_t pass = 0;
     for (const auto& [size, event] : wave.launches) {
-        // Passes share what counts their rays; other stages are launched once a wave.
         const bool in_pass = size.stage == Stage::shade || size.stage == Stage::shadow;
-        const Counters& after = in_pass ? wave.passes[pass] : wave.after;
-        const Counters& since = in_pass ? before : wave.before;
+        const std::size_t place = in_pass ? pass : 0;
+        // resolve, which belongs to no wave, changes none.
+        const Counters& before = wave.before[place];
+        const Counters& after = wave.number == profile::no_wave ? before : wave.after[place];
         Launch launch;
         launch.stage = size.stage;
         launch.depth = wave.depth;
@@ -140,20 +134,21 @@ void Profiler::settle(PendingWave& wave) {
         launch.places = size.places;
         launch.traffic = profile::bytes_moved(
             {size.stage, launch.items_in, launch.items_out, size.segments, wave.fates.hits(), wave.passing});
-        launch.traffic.atomics = atomics_of(after, size.stage) - atomics_of(since, size.stage);
-        if (size.stage == Stage::shadow) before = wave.passes[pass++];
+        launch.traffic.atomics = atomics_of(after, size.stage) - atomics_of(before, size.stage);
         launch.queued = event_time(event, CL_PROFILING_COMMAND_QUEUED);
-        launch.submitted = event_time(event, CL_PROFILING_COMMAND_SUBMIT);
+        if (frame_.detail == Detail::launches) launch.submitted = event_time(event, CL_PROFILING_COMMAND_SUBMIT);
         launch.started = event_time(event, CL_PROFILING_COMMAND_START);
         launch.ended = event_time(event, CL_PROFILING_COMMAND_END);
         count(launch);
+        if (size.stage == Stage::shadow) ++pass;
     }
     wave.launches.clear();
 }
 
 void Profiler::count(const Launch& launch) {
-    const auto same_stage = [&](const profile::StageTotal& total) { return total.stage == launch.stage; };
-    count_gap(launch, std::ranges::none_of(frame_.stages, same_stage));
+    bool& launched = launched_[static_cast<std::size_t>(launch.stage)];
+    count_gap(launch, !launched);
+    launched = true;
     place_of(launch.stage, launch.depth) += profile::total_of(launch, capacity_after(launch));
     if (frame_.detail == Detail::launches) frame_.launches.push_back(launch);
 }

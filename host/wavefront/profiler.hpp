@@ -1,8 +1,10 @@
 // Collects the counts and times of a frame while it is rendered.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "profile/profile.hpp"
@@ -21,7 +23,7 @@ struct ClockReading {
 ClockReading read_clocks(const Device& device);
 
 /// Between waves the profiler holds totals; with Detail::launches every launch and wave too. Calls go in the order
-/// launched ... end_pass ... settle ... end_wave, and again for the next wave.
+/// launched ... settle ... end_wave, and again for the next wave.
 class Profiler {
   public:
     struct FrameShape {
@@ -36,16 +38,13 @@ class Profiler {
 
     void launched(const LaunchSize& size, const cl::Event& event) { wave_.launches.push_back({size, event}); }
 
-    /// shade and shadow have been launched for a range of light samples: asks for the counters, without waiting.
-    void end_pass(const Buffer<Counters>& counters);
-
     /// Works out what the last wave did: to be called when this one's kernels are on their way, so that the device need
     /// not wait for it.
     void settle();
 
-    /// Everything launched so far has finished, and `counters` is what it left. Throws QueueMismatch where the kernels'
-    /// counts contradict each other.
-    void end_wave(const Batch& batch, const Counters& counters);
+    /// Everything launched so far has finished, and `counters` is what it left, one a pass over the light samples.
+    /// Throws QueueMismatch where the kernels' counts contradict each other.
+    void end_wave(const Batch& batch, std::span<const Counters> counters);
 
     /// The frame's last launch has finished.
     profile::FrameProfile finish(const Waves& waves);
@@ -58,8 +57,7 @@ class Profiler {
     /// The launches of a wave, and what they left in the counters.
     struct PendingWave {
         std::vector<TimedLaunch> launches;
-        std::vector<Counters> passes;  // after each pass; that of the last is `after`
-        Counters before{}, after{};
+        std::vector<Counters> before, after;  // of each pass
         int depth = profile::no_depth;
         std::uint32_t number = profile::no_wave;
         profile::Fates fates;
@@ -78,9 +76,9 @@ class Profiler {
     profile::FrameProfile frame_;
     PendingWave wave_;   // that is being launched
     PendingWave ended_;  // that has run, but was not settled yet
-    std::size_t pass_ = 0;
     std::uint32_t waves_ = 0;
-    std::int64_t start_;  // of the frame, host
+    std::array<bool, profile::stage_count> launched_{};  // stages that have been, in this frame
+    std::int64_t start_;                                 // of the frame, host
     ClockReading clocks_;
     std::int64_t last_end_ = 0;  // of the last kernel, device; 0: none yet
 };

@@ -24,6 +24,19 @@ std::vector<SlotRange> make_slot_ranges(uint slots) {
     return ranges;
 }
 
+/// What all passes of a frame counted; children are those of the last wave.
+Counters sum(const std::vector<Counters>& passes) {
+    Counters sum = passes.front();
+    for (const Counters& pass : std::span(passes).subspan(1)) {
+        sum.shadow_rays += pass.shadow_rays;
+        sum.shadow_traced += pass.shadow_traced;
+        sum.shadow_blocked += pass.shadow_blocked;
+        sum.saturated += pass.saturated;
+        sum.not_a_number += pass.not_a_number;
+    }
+    return sum;
+}
+
 std::uint64_t camera_samples(const Scene& scene) {
     return film_pixels(scene) * static_cast<std::uint64_t>(scene.settings.spp);
 }
@@ -65,7 +78,7 @@ void Renderer::allocate_queues() try {
     const std::size_t segments = std::size_t{Stages::chunks(plan_.queue_capacity)} * slot_ranges_.front().count;
     hits_ = Buffer<Hit>(device_, plan_.queue_capacity);
     shadow_queue_ = {{device_, segments * CHUNK}, {device_, segments}};
-    film_ = {{device_, film_pixels(scene_) * FILM_CHANNELS * planes_.count()}, {device_, 1}};
+    film_ = {{device_, film_pixels(scene_) * FILM_CHANNELS * planes_.count()}, {device_, slot_ranges_.size()}};
     make_ready();
     device_.queue.finish();
 } catch (const cl::Error& error) {
@@ -174,7 +187,7 @@ Frame Renderer::read_frame() {
     frame.rgba = resolve();
     frame.samples_per_pixel = scene_.settings.spp;
     frame.planes = planes_;
-    const Counters counters = film_.counters.read_one(device_);
+    const Counters counters = sum(film_.counters.read(device_));
     if (counters.shadow_rays != counters.shadow_traced)
         throw QueueMismatch(
             fmt::format("{} shadow rays were pushed and {} popped", counters.shadow_rays, counters.shadow_traced));
@@ -211,14 +224,15 @@ void Renderer::trace(const Batch& batch) {
     film_.pixels_once = pixels_once(batch.depth, spp);
     stages_.intersect(device_scene_, rays, hits_, film_);
     show("intersect", batch);
-    for (const SlotRange& slots : slot_ranges_) {
+    for (std::size_t pass = 0; pass < slot_ranges_.size(); ++pass) {
+        const SlotRange& slots = slot_ranges_[pass];
+        film_.pass = profiler_ ? static_cast<uint>(pass) : 0;
         film_.pixels_once = pixels_once(batch.depth, spp);
         stages_.shade(device_scene_, rays, hits_, slots, shadow_queue_, film_);
         show("shade", batch, slots);
         film_.pixels_once = pixels_once(batch.depth, spp, slots.count);
         stages_.shadow(device_scene_, shadow_queue_, Stages::chunks(batch.count) * slots.count, film_);
         show("shadow", batch, slots);
-        if (profiler_) profiler_->end_pass(film_.counters);
     }
     if (planes_.any_feature()) stages_.features(device_scene_, rays, static_cast<uint>(batch.depth), hits_, film_);
     const bool goes_deeper = batch.depth < max_depth_;
@@ -231,8 +245,8 @@ void Renderer::trace(const Batch& batch) {
         return;
     }
     if (profiler_) profiler_->settle();
-    const Counters counters = film_.counters.read_one(device_);
-    if (goes_deeper) take_children(batch, counters.children);
+    const std::vector<Counters> counters = film_.counters.read(device_, 0, profiler_ ? film_.counters.size() : 1);
+    if (goes_deeper) take_children(batch, counters.front().children);
     if (profiler_) profiler_->end_wave(batch, counters);
 }
 

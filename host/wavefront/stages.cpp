@@ -33,7 +33,7 @@ cl_ulong argument(std::uint64_t value) {
 }
 
 uint film_flags(const Film& film) {
-    return (film.pixels_once ? FILM_PIXELS_ONCE : 0) | (film.counted ? FILM_COUNTED : 0);
+    return (film.pixels_once ? FILM_PIXELS_ONCE : 0) | (film.counted ? FILM_COUNTED : 0) | film.pass << FILM_PASS_SHIFT;
 }
 
 }  // namespace

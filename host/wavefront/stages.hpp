@@ -34,6 +34,8 @@ struct Film {
     bool pixels_once = false;
     /// The kernels count for a profile, too: see Counters.
     bool counted = false;
+    /// Which of the counters shade and shadow add to; other stages add to the first.
+    uint pass = 0;
 };
 
 /// Film::pixels_once of launches on rays of this depth: camera rays of one sample a pixel have each its own. slots:

@@ -172,6 +172,8 @@ function stageFigure(settings) {
                 ...idleParts.map(([key, name, colour]) => ({name, colour, value: setting.profile.times.frame[key]}))
             ]
         }));
+    const longest = Math.max(...bars.map(bar => sum(bar.parts.map(part => part.value))));
+    const [unit, unitName] = longest < 0.5 ? [1e3, 'milliseconds of a frame'] : [1, 'seconds of a frame'];
     const entries =
         [...stages.map(name => [stageColour(name), name]), ...idleParts.map(([, name, colour]) => [colour, name])];
     const plot = stackedBars({
@@ -179,7 +181,8 @@ function stageFigure(settings) {
         bars,
         unit: secondsName,
         xName: 'queue capacity (rays of a wave at most)',
-        yName: 'seconds of a frame'
+        yName: unitName,
+        label: value => short(value * unit)
     });
     return figure(
         'stages', 'Time by stage',
@@ -231,6 +234,9 @@ function fillFigure(settings) {
                          grouped(at(r, c).high_water), grouped(at(r, c).capacity)]))));
 }
 
+/** What the stage does for an item of its queue; empty where that held none. */
+const eachItem = (stage, key, digits) => stage.items_in ? fixed(stage[key] / stage.items_in, digits) : '';
+
 function groupFigure(settings) {
     const stages = stagesOf(settings), stage = (r, c) => stageOf(settings[c], stages[r]);
     const plot = heatMap({
@@ -251,7 +257,11 @@ function groupFigure(settings) {
             'segment for each chunk of hits and light sample: where surfaces face away from a light they stay empty.',
         plot,
         table(
-            'Work-groups by stage', ['rays of a wave', '=stage', 'launches', 'groups', 'places', 'items', 'fill'],
+            'Work-groups by stage, and what they move for an item',
+            [
+                'rays of a wave', '=stage', 'launches', 'groups', 'places', 'items', 'fill', 'bytes read',
+                'bytes written', 'atomics'
+            ],
             settings.flatMap(
                 (setting, c) =>
                     stages.map((name, r) => [stage(r, c), name, setting])
@@ -259,7 +269,9 @@ function groupFigure(settings) {
                         .map(
                             ([one, name]) =>
                                 [grouped(setting.queue_capacity), name, grouped(one.launches), grouped(one.groups),
-                                 grouped(one.places), grouped(one.items_in), percent(one.fullness, 1)]))));
+                                 grouped(one.places), grouped(one.items_in), percent(one.fullness, 1),
+                                 eachItem(one, 'bytes_read', 1), eachItem(one, 'bytes_written', 1),
+                                 eachItem(one, 'atomics', 2)]))));
 }
 
 function memoryFigure() {
@@ -302,14 +314,15 @@ function fatesFigure() {
                                 name: String(depth.depth),
                                 parts: fateParts.map(([key, name, colour]) => ({name, colour, value: depth.fates[key]}))
                             }));
+    const [unit, unitName] = depths[0].popped < 1e6 ? [1e3, 'thousand rays'] : [1e6, 'million rays'];
     const plot = stackedBars({
         name: 'Rays by depth',
         bars,
         unit: grouped,
         xName: 'depth',
-        yName: 'million rays',
+        yName: unitName,
         height: 320,
-        label: value => short(value / 1e6)
+        label: value => short(value / unit)
     });
     return figure(
         'fates', 'What became of the rays', 'Camera rays have depth zero. These counts are the same for every setting.',
