@@ -38,12 +38,13 @@ kernel void shade(global const Ray* rays, uint first_ray, uint count, global con
         places[found] = i;
         found += hits[i].primitive != NO_INDEX;
     }
-    uint pushed[SHADOW_SAMPLES] = {0}, atomics = 0;
+    uint pushed[SHADOW_SAMPLES] = {0}, passing = 0, atomics = 0;
     for (uint first = 0; first < found; first += LANES) {
         Shading shading;
         shading.hits = gather_hits(rays + first_ray, hits, places + first, min((uint)LANES, found - first));
         shade_hits(&world, &shading);
         if (first_slot == 0) atomics += add_local_light(&film, &world, &shading);
+        passing += popcount(shading.passing);
         if (!answers_light(&shading)) continue;
         const Lanes3 start = shadow_start(&world, &shading.surface);
         for (uint k = 0; k < slot_count; ++k) {
@@ -59,9 +60,7 @@ kernel void shade(global const Ray* rays, uint first_ray, uint count, global con
         total += pushed[k];
     }
     atomics += film_count(&counters->shadow_rays, total);
-    if (first_slot == 0 && (film_flags & FILM_COUNTED)) {
-        uint passing = 0;
-        for (uint i = 0; i < found; ++i) passing += may_spawn(&world, hits[places[i]].primitive) ? 1 : 0;
+    if (first_slot == 0) {
         film_profile(&film, &counters->missed, end - begin - found);
         film_profile(&film, &counters->passing, passing);
     }

@@ -66,19 +66,19 @@ std::uint64_t items_out(const LaunchSize& size, const Fates& fates, const Counte
 
 ClockReading read_clocks(const Device& device) {
     // The runtime stamps a command somewhere within the call that queues it: the shortest of a few calls tells best.
-    ClockReading best;
-    std::int64_t shortest = INT64_MAX;
-    for (int i = 0; i < 4; ++i) {
-        cl::Event event;
-        const std::int64_t before = profile::now();
-        device.queue.enqueueMarkerWithWaitList(nullptr, &event);
-        const std::int64_t after = profile::now();
-        device.queue.finish();
-        if (after - before >= shortest) continue;
-        shortest = after - before;
-        best = {before + shortest / 2, event_time(event, CL_PROFILING_COMMAND_QUEUED)};
+    constexpr std::size_t calls = 4;
+    std::array<cl::Event, calls> events;
+    std::array<std::int64_t, calls> before, after;
+    for (std::size_t i = 0; i < calls; ++i) {
+        before[i] = profile::now();
+        device.queue.enqueueMarkerWithWaitList(nullptr, &events[i]);
+        after[i] = profile::now();
     }
-    return best;
+    device.queue.finish();
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < calls; ++i)
+        if (after[i] - before[i] < after[best] - before[best]) best = i;
+    return {before[best] + (after[best] - before[best]) / 2, event_time(events[best], CL_PROFILING_COMMAND_QUEUED)};
 }
 
 Profiler::Profiler(const Device& device, const FrameShape& shape, Detail detail)

@@ -17,6 +17,7 @@ typedef struct {
     float16 shininess;
     float16 local_share;  // share of local illumination in the blend
     Lanes3 weight;        // of the diffuse and specular terms
+    uint passing;         // lanes whose surface passes light on, as bits
 } Shading;
 
 static inline void shade_hits(const World* world, Shading* s) {
@@ -33,6 +34,7 @@ static inline void shade_hits(const World* world, Shading* s) {
     s->diffuse = diffuse_color(world, &s->surface, s->flags, lanes_xyz(diffuse));
     s->specular = lanes_xyz(specular);
     s->local_share = positive16(1.0f - diffuse.w - specular.w);  // reflection and transmission
+    s->passing = lane_mask16(diffuse.w + specular.w > 0.0f) & ((1u << s->hits.count) - 1u);
     s->weight = lanes_scale(s->throughput, s->local_share);
 }
 
