@@ -11,10 +11,9 @@
 #ifdef RAYMILL_PACKETS
 static void intersect_chunk(const Geometry* geometry, global const Ray* rays, uint count, global Hit* hits) {
     Packet packet;
-    for (uint i = 0; i < count; ++i) chunk_add(&packet.rays, i, rays[i].origin, rays[i].direction, INFINITY);
-    chunk_prepare(&packet.rays, count);
+    chunk_load(&packet.rays, rays, WORDS(Ray), false, count);
     traverse_chunk(geometry, &packet, false);
-    for (uint i = 0; i < count; ++i) hits[i] = chunk_hit(&packet.rays, i);
+    chunk_store_hits(&packet.rays, hits);
 }
 #else
 static void intersect_chunk(const Geometry* geometry, global const Ray* rays, uint count, global Hit* hits) {

@@ -53,33 +53,57 @@ static inline float16 twice(float8 v) {
     return pair;
 }
 
-static inline void set_group(float16* pairs, uint group, float value) {
-    ((float8*)pairs)[group] = (float8)(value);
+/// The first eight lanes of two vectors, and the last eight.
+static inline float16 first_halves(float16 a, float16 b) {
+    return (float16)(a.s0, a.s1, a.s2, a.s3, a.s4, a.s5, a.s6, a.s7, b.s0, b.s1, b.s2, b.s3, b.s4, b.s5, b.s6, b.s7);
+}
+static inline float16 last_halves(float16 a, float16 b) {
+    return (float16)(a.s8, a.s9, a.sa, a.sb, a.sc, a.sd, a.se, a.sf, b.s8, b.s9, b.sa, b.sb, b.sc, b.sd, b.se, b.sf);
+}
+
+/// The smallest lane of each of four vectors, in four lanes each: half of two vectors at a time.
+static inline float16 min_lanes(float16 a, float16 b, float16 c, float16 d) {
+    const float16 ab = min16(first_halves(a, b), last_halves(a, b)), cd = min16(first_halves(c, d), last_halves(c, d));
+    const float16 quarters = min16((float16)(ab.s0, ab.s1, ab.s2, ab.s3, ab.s8, ab.s9, ab.sa, ab.sb, cd.s0, cd.s1,
+                                             cd.s2, cd.s3, cd.s8, cd.s9, cd.sa, cd.sb),
+                                   (float16)(ab.s4, ab.s5, ab.s6, ab.s7, ab.sc, ab.sd, ab.se, ab.sf, cd.s4, cd.s5,
+                                             cd.s6, cd.s7, cd.sc, cd.sd, cd.se, cd.sf));
+    const float16 eighths = min16(quarters, quarters.s23016745ab89efcd);
+    return min16(eighths, eighths.s1032547698badcfe);
+}
+
+/// The smallest and the largest lane of each group, in four lanes each.
+static inline float16 min_of_groups(const float16* v) {
+    return min_lanes(v[0], v[1], v[2], v[3]);
+}
+static inline float16 max_of_groups(const float16* v) {
+    return -min_lanes(-v[0], -v[1], -v[2], -v[3]);
+}
+
+/// Spreads such lanes to the eight that a group has in a vector of pairs.
+static inline void set_pairs(float16* pairs, float16 v) {
+    pairs[0] = v.s0000000044444444;
+    pairs[1] = v.s88888888cccccccc;
 }
 
 static inline void update_farthest(Packet* p) {
-    float farthest = -1.0f;
-#pragma unroll
-    for (uint group = 0; group < GROUPS; ++group) {
-        const float here = max_lane(p->rays.best_t[group]);
-        set_group(p->farthest, group, here);
-        farthest = here > farthest ? here : farthest;
-    }
-    p->farthest_of_all = farthest;
+    const float16 farthest = max_of_groups(p->rays.best_t);
+    set_pairs(p->farthest, farthest);
+    p->farthest_of_all = fmax(fmax(farthest.s0, farthest.s4), fmax(farthest.s8, farthest.sc));
 }
 
 /// Where along z the first and the last ray reach a plane. A single ray's distances are up to 5 roundings of
 /// origin * inverse away from the middle (slabs.h), ours 3 more.
-static inline void prepare_depth(Packet* p, uint group) {
+static inline void prepare_depth(Packet* p) {
     const uint z = p->axis[2], sign = p->sign[z];
-    const float lower = min_lane(p->rays.origin[z][group]), upper = max_lane(p->rays.origin[z][group]);
-    const float smallest = min_lane(p->rays.inverse[z][group]), largest = max_lane(p->rays.inverse[z][group]);
-    const float slack = 16.0f * ROUNDING * fmax(fabs(lower), fabs(upper));
-    const float slow = sign ? largest : smallest, fast = sign ? smallest : largest;  // smaller and larger |inverse|
-    set_group(p->enter_scale, group, slow);
-    set_group(p->enter_offset, group, -(sign ? lower : upper) * slow - slack * fabs(slow));
-    set_group(p->leave_scale, group, fast);
-    set_group(p->leave_offset, group, -(sign ? upper : lower) * fast + slack * fabs(fast));
+    const float16 lower = min_of_groups(p->rays.origin[z]), upper = max_of_groups(p->rays.origin[z]);
+    const float16 smallest = min_of_groups(p->rays.inverse[z]), largest = max_of_groups(p->rays.inverse[z]);
+    const float16 slack = 16.0f * ROUNDING * max16(fabs(lower), fabs(upper));
+    const float16 slow = sign ? largest : smallest, fast = sign ? smallest : largest;  // smaller and larger |inverse|
+    set_pairs(p->enter_scale, slow);
+    set_pairs(p->enter_offset, -(sign ? lower : upper) * slow - slack * fabs(slow));
+    set_pairs(p->leave_scale, fast);
+    set_pairs(p->leave_offset, -(sign ? upper : lower) * fast + slack * fabs(fast));
 }
 
 /// Widened by more than what the tests of single rays may be off: a few roundings of the origins, the waist and what lies
@@ -92,34 +116,37 @@ static inline void prepare_beams(Packet* p) {
         size = max16(to_waist + fabs(p->rays.origin[p->axis[1]][group]), size);
     }
     const float slack = 32.0f * ROUNDING * (max_lane(size) + fabs(p->waist));
-    for (uint group = 0; group < GROUPS; ++group) {
-        const float16 to_waist = p->waist - p->rays.origin[p->axis[2]][group];
-        for (uint a = 0; a < 2; ++a) {
+    for (uint a = 0; a < 2; ++a) {
+        float16 rising[GROUPS], place[GROUPS];
+        for (uint group = 0; group < GROUPS; ++group) {
             const float16 slope = p->rays.shear[a][group];
-            const float16 place = fma(slope, to_waist, p->rays.origin[p->axis[a]][group]);
-            const float16 rising = slope * p->side;
-            set_group(p->slope[0][a], group, 32.0f * ROUNDING - min_lane(rising));
-            set_group(p->slope[1][a], group, 32.0f * ROUNDING + max_lane(rising));
-            set_group(p->bound[0][a], group, slack - min_lane(place));
-            set_group(p->bound[1][a], group, slack + max_lane(place));
+            place[group] = fma(slope, p->waist - p->rays.origin[p->axis[2]][group], p->rays.origin[p->axis[a]][group]);
+            rising[group] = slope * p->side;
         }
+        set_pairs(p->slope[0][a], 32.0f * ROUNDING - min_of_groups(rising));
+        set_pairs(p->slope[1][a], 32.0f * ROUNDING + max_of_groups(rising));
+        set_pairs(p->bound[0][a], slack - min_of_groups(place));
+        set_pairs(p->bound[1][a], slack + max_of_groups(place));
     }
 }
 
 /// How wide the packet is where its rays reach a plane square to z.
 static inline float width_at(const Packet* p, float z) {
-    float width = 0.0f;
+    float16 lower[2], below_upper[2];
+#pragma unroll
     for (uint a = 0; a < 2; ++a) {
-        float16 lower = (float16)(INFINITY), upper = (float16)(-INFINITY);
+        float16 lo = (float16)(INFINITY), hi = (float16)(-INFINITY);
         for (uint group = 0; group < GROUPS; ++group) {
             const float16 place = fma(p->rays.shear[a][group], z - p->rays.origin[p->axis[2]][group],
                                       p->rays.origin[p->axis[a]][group]);
-            lower = min16(lower, place);
-            upper = max16(upper, place);
+            lo = min16(lo, place);
+            hi = max16(hi, place);
         }
-        width += max_lane(upper) - min_lane(lower);
+        lower[a] = lo;
+        below_upper[a] = -hi;
     }
-    return width;
+    const float16 m = min_lanes(lower[0], below_upper[0], lower[1], below_upper[1]);
+    return -(m.s0 + m.s4) - (m.s8 + m.sc);
 }
 
 /// Where along z the first and the last ray come closest; not finite if they are parallel.
@@ -187,7 +214,7 @@ static inline void packet_prepare(Packet* p) {
     p->axis[2] = frame.z;
     p->is_pinhole = have_one_origin(&p->rays);
     find_waist(p);
-    for (uint group = 0; group < GROUPS; ++group) prepare_depth(p, group);
+    prepare_depth(p);
     prepare_beams(p);
     update_farthest(p);
 }

@@ -8,10 +8,9 @@
 #ifdef RAYMILL_PACKETS
 static void find_blockers(const Geometry* geometry, global const ShadowRay* rays, uint count, uint* blockers) {
     Packet packet;
-    for (uint i = 0; i < count; ++i) chunk_add(&packet.rays, i, rays[i].origin, rays[i].direction, rays[i].t_max);
-    chunk_prepare(&packet.rays, count);
+    chunk_load(&packet.rays, rays, WORDS(ShadowRay), true, count);
     traverse_chunk(geometry, &packet, true);
-    for (uint i = 0; i < count; ++i) blockers[i] = chunk_hit(&packet.rays, i).primitive;
+    for (uint group = 0; group < GROUPS; ++group) vstore16(packet.rays.best_primitive[group], group, blockers);
 }
 #else
 static void find_blockers(const Geometry* geometry, global const ShadowRay* rays, uint count, uint* blockers) {

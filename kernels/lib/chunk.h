@@ -3,6 +3,7 @@
 #ifndef RAYMILL_CHUNK_H
 #define RAYMILL_CHUNK_H
 
+#include "lib/gather.h"
 #include "lib/traverse.h"
 
 #define GROUP 16                // rays of one vector
@@ -41,17 +42,6 @@ static inline void chunk_set_hit(RayChunk* c, uint i, Hit hit) {
     set_lane(c->best_u, i, hit.u);
     set_lane(c->best_v, i, hit.v);
     ((uint*)c->best_primitive)[i] = hit.primitive;
-}
-
-/// Call for each i from 0 on, then chunk_prepare(). Nothing farther than t_max counts.
-static inline void chunk_add(RayChunk* c, uint i, global const float* origin, global const float* direction,
-                             float t_max) {
-#pragma unroll
-    for (uint axis = 0; axis < 3; ++axis) {
-        set_lane(c->origin[axis], i, origin[axis]);
-        set_lane(c->direction[axis], i, direction[axis]);
-    }
-    chunk_set_hit(c, i, no_hit(t_max));
 }
 
 /// Adds ray j of another chunk, with what it has found so far.
@@ -93,6 +83,15 @@ static inline void prepare_triangle_frame(RayChunk* c, uint group) {
     c->shear[2][group] = 1.0f / along;
 }
 
+/// slab_frame() and triangle_frame() of all rays.
+static inline void chunk_frames(RayChunk* c) {
+    for (uint group = 0; group < GROUPS; ++group) {
+        prepare_triangle_frame(c, group);
+#pragma unroll
+        for (uint axis = 0; axis < 3; ++axis) prepare_slabs(c, group, axis);
+    }
+}
+
 /// Repeats ray 0 in the places without a ray, and makes the frames. count > 0.
 static inline void chunk_prepare(RayChunk* c, uint count) {
     c->count = count;
@@ -104,10 +103,55 @@ static inline void chunk_prepare(RayChunk* c, uint count) {
         }
         chunk_set_hit(c, i, no_hit(-1.0f));
     }
-    for (uint group = 0; group < GROUPS; ++group) {
-        prepare_triangle_frame(c, group);
+    chunk_frames(c);
+}
+
+/// Loads `count` rays of a queue, count > 0, and makes their frames. A record, `stride` words long, begins with the
+/// origin in words 0-2 and the direction in 4-6. With have_end word 3 says how far away hits count.
+static inline void chunk_load(RayChunk* c, global const void* records, uint stride, bool have_end, uint count) {
+    const uint16 lane = (uint16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    global const float* words = records;
+    c->count = count;
 #pragma unroll
-        for (uint axis = 0; axis < 3; ++axis) prepare_slabs(c, group, axis);
+    for (uint group = 0; group < GROUPS; ++group) {
+        const uint16 place = lane + GROUP * group;
+        const int16 is_ray = place < count;
+        Lanes4 start, along;
+        if (GROUP * (group + 1) <= count) {
+            start = load4(words + GROUP * group * stride, stride);
+            along = load4(words + GROUP * group * stride + 4, stride);
+        } else {
+            const uint16 record = select((uint16)(0), place, is_ray);
+            start = gather4(words, stride, record);
+            along = gather4(words + 4, stride, record);
+        }
+        c->origin[0][group] = start.x;
+        c->origin[1][group] = start.y;
+        c->origin[2][group] = start.z;
+        c->direction[0][group] = along.x;
+        c->direction[1][group] = along.y;
+        c->direction[2][group] = along.z;
+        c->best_t[group] = select((float16)(-1.0f), have_end ? start.w : (float16)(INFINITY), is_ray);
+        c->best_u[group] = (float16)(0.0f);
+        c->best_v[group] = (float16)(0.0f);
+        c->best_primitive[group] = (uint16)(NO_INDEX);
+    }
+    // What the next work-item will load: a chunk fills a page, and processors do not foresee beyond that.
+    fetch_early(words + CHUNK * stride, CHUNK * stride * sizeof(float));
+    chunk_frames(c);
+}
+
+/// Writes what the rays have found.
+static inline void chunk_store_hits(const RayChunk* c, global Hit* hits) {
+    for (uint group = 0; group < GROUPS; ++group) {
+        const Lanes3 tuv = {c->best_t[group], c->best_u[group], c->best_v[group]};
+        const Rows rows = rows_of(tuv, as_float16(c->best_primitive[group]));
+        if (GROUP * (group + 1) <= c->count) {
+#pragma unroll
+            for (uint part = 0; part < 4; ++part) vstore16(rows.part[part], 4 * group + part, (global float*)hits);
+        } else {
+            for (uint i = GROUP * group; i < c->count; ++i) store_row(hits + i, row_of(&rows, i - GROUP * group));
+        }
     }
 }
 

@@ -61,61 +61,77 @@ static inline int16 keep_inside(int16 hit, uint on_edge, float16 ax, float16 ay,
     return hit;
 }
 
-/// Rays of a group that hit one triangle nearer than their best so far; replaces it. The arithmetic is that of
-/// intersect_triangles() in triangle.h, with rays in the place of triangles.
-static inline bool visit_triangle_group(Packet* p, global const TriangleBlock* block, const BlockView* view, uint lane,
-                                        uint group, bool any_hit) {
-    RayChunk* c = &p->rays;
-    const float16 shear_x = -c->shear[0][group], shear_y = -c->shear[1][group];
+/// A triangle as the rays of a group see it: corners in their frames, twice the areas opposite each, the sum of these,
+/// and the distance times that sum.
+typedef struct {
     float16 ax, ay, az, bx, by, bz, cx, cy, cz;
+    float16 ua, va, wa, det, scaled;
+} GroupTriangle;
+
+/// Finds out which rays of a group have a line through a triangle. The arithmetic is that of intersect_triangles() in
+/// triangle.h, with rays in the place of triangles. With any_hit those are left out that have it behind them, as the
+/// surface often is which a shadow ray starts on.
+static inline __attribute__((always_inline)) int16 pass_through(const Packet* p, global const TriangleBlock* block,
+                                                                const BlockView* view, uint lane, uint group,
+                                                                bool any_hit, GroupTriangle* g) {
+    const RayChunk* c = &p->rays;
+    const float16 shear_x = -c->shear[0][group], shear_y = -c->shear[1][group];
     if (p->is_pinhole) {
-        az = view->corner[0][2][lane];
-        bz = view->corner[1][2][lane];
-        cz = view->corner[2][2][lane];
-        ax = fma(shear_x, az, (float16)(view->corner[0][0][lane]));
-        ay = fma(shear_y, az, (float16)(view->corner[0][1][lane]));
-        bx = fma(shear_x, bz, (float16)(view->corner[1][0][lane]));
-        by = fma(shear_y, bz, (float16)(view->corner[1][1][lane]));
-        cx = fma(shear_x, cz, (float16)(view->corner[2][0][lane]));
-        cy = fma(shear_y, cz, (float16)(view->corner[2][1][lane]));
+        g->az = view->corner[0][2][lane];
+        g->bz = view->corner[1][2][lane];
+        g->cz = view->corner[2][2][lane];
+        g->ax = fma(shear_x, g->az, (float16)(view->corner[0][0][lane]));
+        g->ay = fma(shear_y, g->az, (float16)(view->corner[0][1][lane]));
+        g->bx = fma(shear_x, g->bz, (float16)(view->corner[1][0][lane]));
+        g->by = fma(shear_y, g->bz, (float16)(view->corner[1][1][lane]));
+        g->cx = fma(shear_x, g->cz, (float16)(view->corner[2][0][lane]));
+        g->cy = fma(shear_y, g->cz, (float16)(view->corner[2][1][lane]));
     } else {
         const uint x = p->axis[0], y = p->axis[1], z = p->axis[2];
         const float16 origin_x = c->origin[x][group], origin_y = c->origin[y][group], origin_z = c->origin[z][group];
-        az = block->position[0][z][lane] - origin_z;
-        bz = block->position[1][z][lane] - origin_z;
-        cz = block->position[2][z][lane] - origin_z;
-        ax = fma(shear_x, az, block->position[0][x][lane] - origin_x);
-        ay = fma(shear_y, az, block->position[0][y][lane] - origin_y);
-        bx = fma(shear_x, bz, block->position[1][x][lane] - origin_x);
-        by = fma(shear_y, bz, block->position[1][y][lane] - origin_y);
-        cx = fma(shear_x, cz, block->position[2][x][lane] - origin_x);
-        cy = fma(shear_y, cz, block->position[2][y][lane] - origin_y);
+        g->az = block->position[0][z][lane] - origin_z;
+        g->bz = block->position[1][z][lane] - origin_z;
+        g->cz = block->position[2][z][lane] - origin_z;
+        g->ax = fma(shear_x, g->az, block->position[0][x][lane] - origin_x);
+        g->ay = fma(shear_y, g->az, block->position[0][y][lane] - origin_y);
+        g->bx = fma(shear_x, g->bz, block->position[1][x][lane] - origin_x);
+        g->by = fma(shear_y, g->bz, block->position[1][y][lane] - origin_y);
+        g->cx = fma(shear_x, g->cz, block->position[2][x][lane] - origin_x);
+        g->cy = fma(shear_y, g->cz, block->position[2][y][lane] - origin_y);
     }
-    const float16 ua = cx * by - cy * bx;
-    const float16 va = ax * cy - ay * cx;
-    const float16 wa = bx * ay - by * ax;
-    const float16 smallest = min16(min16(ua, va), wa), largest = max16(max16(ua, va), wa);
-    int16 hit = (smallest >= 0.0f) | (largest <= 0.0f);
+    g->ua = g->cx * g->by - g->cy * g->bx;
+    g->va = g->ax * g->cy - g->ay * g->cx;
+    g->wa = g->bx * g->ay - g->by * g->ax;
+    g->det = g->ua + g->va + g->wa;
+    g->scaled = fma(g->ua, g->az, fma(g->va, g->bz, g->wa * g->cz)) * c->shear[2][group];
+    const float16 smallest = min16(min16(g->ua, g->va), g->wa), largest = max16(max16(g->ua, g->va), g->wa);
+    int16 through = (smallest >= 0.0f) | (largest <= 0.0f);
+    if (any_hit) through &= (as_int16(g->scaled) ^ as_int16(g->det)) >= 0;
+    return through;
+}
+
+/// Rays of a group that hit one triangle nearer than their best so far; replaces it.
+static inline bool visit_triangle_group(Packet* p, global const TriangleBlock* block, const BlockView* view, uint lane,
+                                        uint group, bool any_hit) {
+    RayChunk* c = &p->rays;
+    GroupTriangle g;
+    int16 hit = pass_through(p, block, view, lane, group, any_hit, &g);
+    // Behind the ray: not worth the division.
+    hit &= (as_int16(g.scaled) ^ as_int16(g.det)) >= 0;
     if (!any16(hit)) return false;
 
-    const float16 det = ua + va + wa;
-    const float16 shear_z = c->shear[2][group];
-    const float16 scaled = fma(ua, az, fma(va, bz, wa * cz)) * shear_z;
-    // Behind the ray, as its own surface often is: not worth the division.
-    hit &= (as_int16(scaled) ^ as_int16(det)) >= 0;
-    if (!any16(hit)) return false;
-
-    const float16 inverse = 1.0f / det;
-    const float16 distance = scaled * inverse;
+    const float16 inverse = 1.0f / g.det;
+    const float16 distance = g.scaled * inverse;
     const float16 best_t = c->best_t[group];
-    hit &= (distance <= best_t) & (det != 0.0f);
+    hit &= (distance <= best_t) & (g.det != 0.0f);
     if (!any16(hit)) return false;
 
-    const float16 x16 = max16(max16(fabs(ax), fabs(bx)), fabs(cx));
-    const float16 y16 = max16(max16(fabs(ay), fabs(by)), fabs(cy));
-    const float16 z16 = max16(max16(fabs(az), fabs(bz)), fabs(cz));
+    const float16 x16 = max16(max16(fabs(g.ax), fabs(g.bx)), fabs(g.cx));
+    const float16 y16 = max16(max16(fabs(g.ay), fabs(g.by)), fabs(g.cy));
+    const float16 z16 = max16(max16(fabs(g.az), fabs(g.bz)), fabs(g.cz));
     const float16 delta_e = 2.0f * ROUNDING * fma(12.0f * x16, y16, 5.0f * z16 * (x16 + y16));
-    const float16 delta = 3.0f * z16 * fabs(shear_z) * fma(delta_e, fabs(inverse), (float16)(6.0f * ROUNDING));
+    const float16 delta =
+        3.0f * z16 * fabs(c->shear[2][group]) * fma(delta_e, fabs(inverse), (float16)(6.0f * ROUNDING));
     hit &= distance > delta;
     float16 t = distance;
 #pragma unroll
@@ -124,10 +140,10 @@ static inline bool visit_triangle_group(Packet* p, global const TriangleBlock* b
     const uint primitive = block->primitive[lane];
     hit &= (t < best_t) | ((t == best_t) & (primitive < c->best_primitive[group]));
 
-    const int16 on_edge = hit & ((ua == 0.0f) | (va == 0.0f) | (wa == 0.0f));
-    if (any16(on_edge)) hit = keep_inside(hit, lane_mask16(on_edge), ax, ay, bx, by, cx, cy);
+    const int16 on_edge = hit & ((g.ua == 0.0f) | (g.va == 0.0f) | (g.wa == 0.0f));
+    if (any16(on_edge)) hit = keep_inside(hit, lane_mask16(on_edge), g.ax, g.ay, g.bx, g.by, g.cx, g.cy);
     if (!any16(hit)) return false;
-    take_hits(c, group, hit, primitive, t, va * inverse, wa * inverse, any_hit);
+    take_hits(c, group, hit, primitive, t, g.va * inverse, g.wa * inverse, any_hit);
     return true;
 }
 
@@ -195,15 +211,23 @@ static inline uint push_groups(const Geometry* geometry, global const uint* chil
     return top + count;
 }
 
-/// Tests each group's rays against those triangles of a block that its beam meets.
+/// Tests each group's rays against those triangles of a block that its beam meets. First which triangles some line of a
+/// group passes through, for all of them without a branch, since no processor foresees it; then the few that are left.
 static inline bool visit_triangles_groups(Packet* p, global const TriangleBlock* block, uint groups, bool any_hit) {
-    bool found = false;
     uint meeting = groups_meeting_triangles(p, block) & spread_groups(groups);
     if (meeting == 0) return false;
     BlockView view;
     view_block(p, block, &view);
+    uint passing = 0;
     for (; meeting != 0; meeting &= meeting - 1) {
         const uint bit = lowest_bit(meeting);
+        GroupTriangle g;
+        const int16 through = pass_through(p, block, &view, bit % BVH_WIDTH, bit / BVH_WIDTH, any_hit, &g);
+        passing |= (uint)any16(through) << bit;
+    }
+    bool found = false;
+    for (; passing != 0; passing &= passing - 1) {
+        const uint bit = lowest_bit(passing);
         found |= visit_triangle_group(p, block, &view, bit % BVH_WIDTH, bit / BVH_WIDTH, any_hit);
     }
     return found;
