@@ -5,21 +5,8 @@
 
 #include "lib/environment.h"
 #include "lib/film.h"
-#include "lib/packet.h"
 #include "lib/surface.h"
-
-#ifdef RAYMILL_PACKETS
-static void intersect_chunk(const Geometry* geometry, global const Ray* rays, uint count, global Hit* hits) {
-    Packet packet;
-    chunk_load(&packet.rays, rays, WORDS(Ray), false, count);
-    traverse_chunk(geometry, &packet, false);
-    chunk_store_hits(&packet.rays, hits);
-}
-#else
-static void intersect_chunk(const Geometry* geometry, global const Ray* rays, uint count, global Hit* hits) {
-    for (uint i = 0; i < count; ++i) hits[i] = closest_hit(geometry, load3(rays[i].origin), load3(rays[i].direction));
-}
-#endif
+#include "lib/trace.h"
 
 /// What up to sixteen rays bring home that miss everything.
 static inline uint add_background(const Film* film, global const Texture* textures, global const float* texels,
@@ -44,7 +31,7 @@ kernel void intersect(global const Ray* rays, uint first_ray, uint count, global
     const uint end = min(begin + RAYS_A_WORK_ITEM, count);
     if (begin >= count) return;
     if (begin == 0) counters->children = 0;
-    intersect_chunk(&geometry, rays + first_ray + begin, end - begin, hits + begin);
+    find_hits(&geometry, rays + first_ray + begin, end - begin, hits + begin);
     uint misses[RAYS_A_WORK_ITEM], missed = 0, atomics = 0;
     for (uint i = begin; i < end; ++i) {
         global const Ray* ray = rays + first_ray + i;

@@ -3,8 +3,8 @@
 // Writes: film; counters->shadow_traced and shadow_blocked.
 // Next:   the next range of light samples, or secondary.
 
-#include "lib/blockers.h"
 #include "lib/film.h"
+#include "lib/trace.h"
 #include "lib/transmittance.h"
 
 /// One work-item a segment, or one ray where rays are traced alone.

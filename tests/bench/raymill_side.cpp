@@ -8,6 +8,15 @@ namespace raymill::bench {
 
 namespace {
 
+constexpr const char* STAGE = ", stage";
+
+/// Closest hits leave the film alone; misses add a black background to its one pixel.
+struct Queues {
+    Buffer<Ray> rays;
+    Buffer<Hit> hits;
+    Film film;
+};
+
 void store(float (&to)[3], const glm::vec3& from) {
     for (int axis = 0; axis < 3; ++axis) to[axis] = from[axis];
 }
@@ -68,10 +77,11 @@ RaymillKernels::RaymillKernels(const std::string& device, unsigned threads, cons
     for (const Traversal traversal : traversals) {
         const bool packets =
             traversal == Traversal::packet || (traversal == Traversal::automatic && device_.info.type == "CPU");
-        const cl::Program program = build_program(device_, {"../tests/bench/occlusion.cl"}, RAYMILL_KERNELS,
+        const cl::Program program = build_program(device_, {"../tests/bench/traversal.cl"}, RAYMILL_KERNELS,
                                                   packets ? "-DRAYMILL_PACKETS" : "");
         kinds_.push_back({name_of(traversal), std::make_unique<Stages>(device_, 0, "", traversal),
-                          make_kernel(program, "occlusion"), packets ? std::size_t{CHUNK} : 1});
+                          make_kernel(program, "closest"), make_kernel(program, "occlusion"),
+                          packets ? std::size_t{CHUNK} : 1});
     }
 }
 
@@ -80,30 +90,40 @@ std::vector<Variant> RaymillSide::variants(const RaySet& set) {
 }
 
 std::vector<Variant> RaymillSide::closest_variants(const RaySet& set) {
-    struct Queues {
-        Buffer<Ray> rays;
-        Buffer<Hit> hits;
-        Film film;
-    };
     const Device& device = kernels_.device();
     const std::vector<Ray> rays = ray_queue(set);
     const auto queues = std::make_shared<Queues>(
         Queues{{device, std::span<const Ray>(rays)}, {device, rays.size()}, film_of(device, 1)});
+    const auto found = [this, queues] {
+        std::vector<std::uint32_t> ids;
+        for (const Hit& hit : queues->hits.read(kernels_.device())) ids.push_back(hit.primitive);
+        return ids;
+    };
+    const auto count = static_cast<uint>(rays.size());
     std::vector<Variant> variants;
     for (const RaymillKernels::Kind& kind : kernels_.kinds()) {
-        const auto trace = [this, queues, stages = kind.stages.get()] {
-            stages->intersect(scene_, {queues->rays, 0, static_cast<uint>(queues->rays.size())}, queues->hits,
-                              queues->film);
+        const auto alone = [this, queues, count, kernel = kind.closest, share = kind.rays_a_work_item]() mutable {
+            run(kernel, (count + share - 1) / share, queues->rays.memory(), count, scene_.nodes.memory(),
+                scene_.triangle_blocks.memory(), scene_.sphere_blocks.memory(), scene_.planes.memory(),
+                scene_.constants.memory(), queues->hits.memory());
+        };
+        const auto stage = [this, queues, count, stages = kind.stages.get()] {
+            stages->intersect(scene_, {queues->rays, 0, count}, queues->hits, queues->film);
             kernels_.device().queue.finish();
         };
-        const auto found = [this, queues] {
-            std::vector<std::uint32_t> ids;
-            for (const Hit& hit : queues->hits.read(kernels_.device())) ids.push_back(hit.primitive);
-            return ids;
-        };
-        variants.push_back({kind.name, true, trace, found});
+        variants.push_back({kind.name, true, alone, found});
+        variants.push_back({kind.name + STAGE, true, stage, found});
     }
     return variants;
+}
+
+template <typename... Arguments>
+void RaymillSide::run(cl::Kernel& kernel, std::size_t work_items, const Arguments&... arguments) const {
+    cl_uint index = 0;
+    (kernel.setArg(index++, arguments), ...);
+    const cl::CommandQueue& queue = kernels_.device().queue;
+    queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(work_items), cl::NDRange(1));
+    queue.finish();
 }
 
 std::vector<Variant> RaymillSide::shadow_variants(const RaySet& set) {
@@ -114,7 +134,7 @@ std::vector<Variant> RaymillSide::shadow_variants(const RaySet& set) {
     std::vector<Variant> variants;
     for (const RaymillKernels::Kind& kind : kernels_.kinds()) {
         variants.push_back(occlusion_variant(kind, queue));
-        variants.push_back(film_variant(kind, queue, set.rays.size()));
+        variants.push_back(shadow_variant(kind, queue, set.rays.size()));
     }
     return variants;
 }
@@ -123,14 +143,9 @@ Variant RaymillSide::occlusion_variant(const RaymillKernels::Kind& kind, std::sh
     const Device& device = kernels_.device();
     const auto blocked = std::make_shared<Buffer<cl_uchar>>(device, rays->rays.size());
     const auto trace = [this, rays, blocked, kernel = kind.occlusion, share = kind.rays_a_work_item]() mutable {
-        cl_uint index = 0;
-        const auto pass = [&](const auto&... arguments) { (kernel.setArg(index++, arguments), ...); };
-        pass(rays->rays.memory(), rays->counts.memory(), static_cast<uint>(rays->counts.size()), scene_.nodes.memory(),
-             scene_.triangle_blocks.memory(), scene_.sphere_blocks.memory(), scene_.planes.memory(),
-             scene_.constants.memory(), blocked->memory());
-        kernels_.device().queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(rays->rays.size() / share),
-                                                     cl::NDRange(1));
-        kernels_.device().queue.finish();
+        run(kernel, rays->rays.size() / share, rays->rays.memory(), rays->counts.memory(),
+            static_cast<uint>(rays->counts.size()), scene_.nodes.memory(), scene_.triangle_blocks.memory(),
+            scene_.sphere_blocks.memory(), scene_.planes.memory(), scene_.constants.memory(), blocked->memory());
     };
     const auto found = [this, rays, blocked] {
         const std::vector<cl_uchar> places = blocked->read(kernels_.device());
@@ -143,8 +158,8 @@ Variant RaymillSide::occlusion_variant(const RaymillKernels::Kind& kind, std::sh
     return {kind.name, true, trace, found};
 }
 
-Variant RaymillSide::film_variant(const RaymillKernels::Kind& kind, std::shared_ptr<ShadowQueue> rays,
-                                  std::size_t count) {
+Variant RaymillSide::shadow_variant(const RaymillKernels::Kind& kind, std::shared_ptr<ShadowQueue> rays,
+                                    std::size_t count) {
     const auto film = std::make_shared<Film>(film_of(kernels_.device(), count));
     const auto trace = [this, rays, film, stages = kind.stages.get()] {
         stages->shadow(scene_, *rays, static_cast<uint>(rays->counts.size()), *film);
@@ -156,7 +171,7 @@ Variant RaymillSide::film_variant(const RaymillKernels::Kind& kind, std::shared_
         for (std::size_t i = 0; i < sums.size(); i += FILM_CHANNELS) blocked.push_back(sums[i] == 0);
         return blocked;
     };
-    return {kind.name + ", film", true, trace, found};
+    return {kind.name + STAGE, true, trace, found};
 }
 
 }  // namespace raymill::bench

@@ -1,5 +1,4 @@
-// Our side: the hierarchy and the stages `intersect` and `shadow`, as the renderer runs them; and the traversal of
-// `shadow` alone.
+// Our side: the hierarchy, the stages `intersect` and `shadow` as the renderer runs them, and their traversal alone.
 #pragma once
 
 #include <memory>
@@ -37,8 +36,8 @@ class RaymillKernels {
     struct Kind {
         std::string name;
         std::unique_ptr<Stages> stages;
-        cl::Kernel occlusion;          // of occlusion.cl
-        std::size_t rays_a_work_item;  // of that kernel
+        cl::Kernel closest, occlusion;  // of traversal.cl
+        std::size_t rays_a_work_item;   // of these
     };
     const Device& device() const { return device_; }
     const std::vector<Kind>& kinds() const { return kinds_; }
@@ -54,17 +53,19 @@ class RaymillSide {
     RaymillSide(const RaymillKernels& kernels, const Scene& scene, const Bvh& bvh)
         : kernels_(kernels), scene_(kernels.device(), scene, bvh) {}
 
-    /// One variant a traversal, all in one queue and launch; of shadow rays two: the traversal alone, which writes
-    /// whether each ray is blocked, and the whole stage, in which an unblocked ray adds 1 to one channel of its own
-    /// pixel. Closest hits leave the film alone: the rays count as secondary ones, and the background is black. Must
-    /// not outlive this.
+    /// Two variants a traversal, all rays in one queue and launch: the traversal alone, which writes hits, or of shadow
+    /// rays a byte that says whether each is blocked; and the whole stage, in which rays that miss look up a black
+    /// background, and an unblocked shadow ray adds 1 to one channel of its own pixel. Must not outlive this.
     std::vector<Variant> variants(const RaySet& set);
 
   private:
     std::vector<Variant> closest_variants(const RaySet& set);
     std::vector<Variant> shadow_variants(const RaySet& set);
     Variant occlusion_variant(const RaymillKernels::Kind& kind, std::shared_ptr<ShadowQueue> rays);
-    Variant film_variant(const RaymillKernels::Kind& kind, std::shared_ptr<ShadowQueue> rays, std::size_t count);
+    Variant shadow_variant(const RaymillKernels::Kind& kind, std::shared_ptr<ShadowQueue> rays, std::size_t count);
+    /// Sets the arguments, launches, and waits.
+    template <typename... Arguments>
+    void run(cl::Kernel& kernel, std::size_t work_items, const Arguments&... arguments) const;
 
     const RaymillKernels& kernels_;
     DeviceScene scene_;

@@ -80,8 +80,9 @@ void print_heading(const Circumstances& c) {
                c.options.bvh == BvhQuality::fast ? "fast" : "high", c.embree, c.options.robust ? ", robust" : "");
     fmt::print(
         "P camera, S to a point light, A to an area light, R mirrored, T through glass, D diffuse rays. {} rounds: "
-        "median [quartiles].\nTimes include reading rays and writing hits, of S and A a byte each; with `film` each "
-        "unblocked ray\nadds to its pixel instead, as in a frame.\n",
+        "median [quartiles], each time the second of two.\nTimes include reading rays and writing hits, of S and A a "
+        "byte each. The whole `stage`: as in a frame, unblocked\nlight goes to the film, and rays that miss to the "
+        "background.\n",
         c.options.rounds);
 }
 
