@@ -9,7 +9,7 @@
 #include "lib/trace.h"
 
 /// What up to sixteen rays bring home that miss everything.
-static inline uint add_background(const Film* film, global const Texture* textures, global const float* texels,
+COMPILED_ONCE static uint add_background(const Film* film, global const Texture* textures, global const float* texels,
                                   const HitLanes* rays) {
     const Lanes3 sky = environment_radiance(textures, texels, film->constants, rays->direction);
     Terms terms = {.count = rays->count, .second = {{(float16)(0.0f)}}};

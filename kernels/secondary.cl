@@ -28,7 +28,7 @@ static inline void spawn(const World* world, const HitLanes* hits, const Surface
 }
 
 /// The children of up to sixteen hits: reflected rays, and refracted ones.
-static inline void spawn_children(const World* world, const HitLanes* hits, ChildLanes* reflected,
+COMPILED_ONCE static void spawn_children(const World* world, const HitLanes* hits, ChildLanes* reflected,
                                   ChildLanes* refracted) {
     SurfaceLanes s;
     surfaces_at(world, hits, &s);
@@ -40,7 +40,7 @@ static inline void spawn_children(const World* world, const HitLanes* hits, Chil
 }
 
 /// Writes one branch's children, the first to `place`; returns the place behind them.
-static inline ulong write_children(const ChildLanes* branch, uint groups, global Ray* children, ulong place) {
+COMPILED_ONCE static ulong write_children(const ChildLanes* branch, uint groups, global Ray* children, ulong place) {
     for (uint group = 0; group < groups; ++group) {
         const ChildLanes* c = branch + group;
         for (uint rest = c->mask; rest != 0; rest &= rest - 1) {

@@ -9,7 +9,7 @@
 #include "lib/lighting.h"
 
 /// Ambient light and emission.
-static inline uint add_local_light(const Film* film, const World* world, const Shading* s) {
+COMPILED_ONCE static uint add_local_light(const Film* film, const World* world, const Shading* s) {
     Terms terms;
     terms.count = s->hits.count;
     vstore16(s->hits.pixel, 0, terms.pixel);

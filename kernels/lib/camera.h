@@ -91,7 +91,7 @@ static inline void samples_of_tiles(CameraCursor* cursor, constant CameraRecord*
 }
 
 /// Takes the next samples. A lane may lie past the last sample: its ray is not to be used.
-static inline void camera_samples(CameraCursor* cursor, constant CameraRecord* camera, CameraSamples* s) {
+COMPILED_ONCE static void camera_samples(CameraCursor* cursor, constant CameraRecord* camera, CameraSamples* s) {
     const uint place = cursor->row * TILE + cursor->column;
     if (cursor->columns * cursor->rows == TILE * TILE && place + LANES <= TILE * TILE)
         samples_of_tile(cursor, camera, s);
@@ -105,7 +105,7 @@ static inline void camera_samples(CameraCursor* cursor, constant CameraRecord* c
 
 /// The rays through the samples' points of the film plane: the pixel's centre with one sample, stratified with more;
 /// through a point of the lens if there is one. Directions are unit.
-static inline void camera_rays(constant CameraRecord* camera, const CameraSamples* s, Lanes3* origin,
+COMPILED_ONCE static void camera_rays(constant CameraRecord* camera, const CameraSamples* s, Lanes3* origin,
                                Lanes3* direction) {
     float16 jitter_x = (float16)(0.5f), jitter_y = (float16)(0.5f);
     if (camera->spp != 1) stratified_samples(s->sample, s->path, RANDOM_PIXEL, &jitter_x, &jitter_y);

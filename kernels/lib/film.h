@@ -133,7 +133,7 @@ static inline void terms_put(Terms* terms, uint pixel, uint route, float3 first,
 
 /// Adds the radiance of two terms. The beauty gets the sum of their integers, so that the planes still add up to it.
 /// Leaves none.
-static inline uint film_add_terms(const Film* film, uint first_term, uint second_term, Terms* terms) {
+COMPILED_ONCE static uint film_add_terms(const Film* film, uint first_term, uint second_term, Terms* terms) {
     union {
         long16 part[4];
         long4 row[LANES];

@@ -113,7 +113,7 @@ static inline void aim(const SurfaceLanes* s, constant SceneConstants* constants
 
 /// Writes the shadow rays of one light sample, in the order of the hits and without those that cannot add anything.
 /// Returns how many.
-static inline uint push_shadow_rays(const Shading* s, Lanes3 start, constant SceneConstants* constants,
+COMPILED_ONCE static uint push_shadow_rays(const Shading* s, Lanes3 start, constant SceneConstants* constants,
                                     global const LightRecord* light, LightSlot slot, global ShadowRay* out) {
     Lanes3 light_position;
     LightSample sample = sample_light(light, slot, s->surface.position, s->hits.sample, s->hits.path, &light_position);

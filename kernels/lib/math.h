@@ -9,6 +9,13 @@
 
 #include "layout.h"
 
+/// For the large functions that kernels call: PoCL compiles what is inlined into a kernel three times.
+#ifdef RAYMILL_PACKETS
+#define COMPILED_ONCE __attribute__((noinline))
+#else
+#define COMPILED_ONCE inline
+#endif
+
 #define PI 3.14159265358979f
 #define ROUNDING 5.9604644775390625e-8f  // 2^-24: half a unit in the last place of 1
 

@@ -190,8 +190,9 @@ static inline bool visit_sphere_group(Packet* p, global const SphereBlock* block
     return true;
 }
 
-/// Pushes the children that some group meets, with the rays that meet them, the nearest on top. An entry is that of push_children() in traverse.h with
-/// the groups in the next four bits of the distance, which only makes it a little smaller.
+/// Pushes the children that some group meets, with the rays that meet them, the nearest on top. An entry is that of
+/// push_children() in traverse.h with the groups in the next four bits of the distance, which only makes it a little
+/// smaller.
 static inline uint push_groups(const Geometry* geometry, global const uint* children, uint mask, float8 entry,
                                const ulong* rays, ulong* stack, ulong* stack_rays, uint top) {
     uint met = (mask | mask >> 16) & 0xffffu;

@@ -20,7 +20,7 @@ typedef struct {
     uint passing;         // lanes whose surface passes light on, as bits
 } Shading;
 
-static inline void shade_hits(const World* world, Shading* s) {
+COMPILED_ONCE static void shade_hits(const World* world, Shading* s) {
     surfaces_at(world, &s->hits, &s->surface);
     global const Material* first = world->materials;
     const Lanes4 ambient = material4(world, &s->surface, first->ambient);

@@ -6,7 +6,7 @@
 
 #ifdef RAYMILL_PACKETS
 /// The closest hit of each ray.
-static void find_hits(const Geometry* geometry, global const Ray* rays, uint count, global Hit* hits) {
+COMPILED_ONCE static void find_hits(const Geometry* geometry, global const Ray* rays, uint count, global Hit* hits) {
     Packet packet;
     chunk_load(&packet.rays, rays, WORDS(Ray), false, count);
     traverse_chunk(geometry, &packet, false);
@@ -14,7 +14,8 @@ static void find_hits(const Geometry* geometry, global const Ray* rays, uint cou
 }
 
 /// For each shadow ray some primitive that stands in its way, or NO_INDEX. blockers has RAYS_A_WORK_ITEM places.
-static void find_blockers(const Geometry* geometry, global const ShadowRay* rays, uint count, uint* blockers) {
+COMPILED_ONCE static void find_blockers(const Geometry* geometry, global const ShadowRay* rays, uint count,
+                                        uint* blockers) {
     Packet packet;
     chunk_load(&packet.rays, rays, WORDS(ShadowRay), true, count);
     traverse_chunk(geometry, &packet, true);

@@ -102,7 +102,7 @@ static void find_crossings(Crossings* c, const Geometry* geometry, const World* 
 }
 
 /// What is left of light from t_max away: filtered by every transmissive surface on the way, each crossing once.
-static inline float3 transmittance(const Geometry* geometry, const World* world, float3 origin, float3 direction,
+COMPILED_ONCE static float3 transmittance(const Geometry* geometry, const World* world, float3 origin, float3 direction,
                                    float t_max) {
     const SlabFrame slabs = slab_frame(origin, direction);
     const TriangleFrame frame = triangle_frame(origin, direction);
