@@ -40,9 +40,8 @@ struct ProfileArguments {
     bool quiet = false;
 
     SweepLists lists() const {
-        return {parse_counts("--queue-capacity", queue_capacities, largest_queue_capacity),
-                parse_counts("--work-group", work_groups, largest_work_group, "auto"),
-                parse_counts("--threads", threads, most_threads, "all"), repeats};
+        return {queue_capacity_flag.parse_list(queue_capacities), work_group_flag.parse_list(work_groups),
+                threads_flag.parse_list(threads), repeats};
     }
 };
 
@@ -180,7 +179,7 @@ Command add_profile_command(CLI::App& app) {
     command.add_option("--work-group", arguments->work_groups, "Work-items of a group; auto is what suits each stage")
         ->type_name("LIST")
         ->capture_default_str();
-    command.add_option("--threads", arguments->threads, "Compute units to use")
+    command.add_option("--threads", arguments->threads, "Compute units to use; all is every one")
         ->type_name("LIST")
         ->capture_default_str();
     command.add_option("--repeats", arguments->repeats, "Timed frames of each setting; their median counts")
