@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <map>
 
 #include "common/child_process.hpp"
@@ -111,6 +112,12 @@ std::uint64_t parse_bytes(const std::string& text) {
     if (!value || unit.size() > 1 || (!unit.empty() && power == 0) || !(bytes >= 1) || bytes > 1e18)
         throw UsageError(fmt::format("--mem-limit {}: give a size in bytes, as in 512M or 2G", text));
     return static_cast<std::uint64_t>(bytes);
+}
+
+void check_keeps(const std::string& input, const std::string& output) {
+    std::error_code missing;
+    if (std::filesystem::equivalent(input, output, missing))
+        throw UsageError(fmt::format("{} is what this reads: choose another file to write", output));
 }
 
 void CountFlag::add_to(CLI::App& command, std::uint32_t& value, const std::string& description) const {

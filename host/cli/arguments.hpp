@@ -67,6 +67,9 @@ Crop parse_crop(const std::string& text);
 /// "512M", "2GiB", "1000000" to bytes: K, M, G and T are powers of 1024. Throws UsageError.
 std::uint64_t parse_bytes(const std::string& text);
 
+/// Throws UsageError if writing `output`, which may be missing or empty, would replace `input`.
+void check_keeps(const std::string& input, const std::string& output);
+
 /// What --queue-capacity, --work-group and --threads are given: numbers from 1 to `largest`, where k is 1024 and M 1024
 /// squared, or `word`, if that is not empty, which stands for 0.
 struct CountFlag {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "exr_pixels.hpp"
@@ -200,6 +201,20 @@ TEST_F(Flags, of_statistics_files_that_cannot_be_written_are_refused_before_rend
                    "where.json");
     expect_failure(run_raymill({"render", scene_, "-o", picture, "--stats-json", picture}), 2, "two things at once");
     EXPECT_EQ(folder_.entries(), 1);
+}
+
+TEST_F(Flags, of_outputs_do_not_replace_the_scene) {
+    const std::string scene = read_bytes(scene_), link = folder_.file("link.json");
+    std::filesystem::create_symlink(scene_, link);
+    for (const std::string& output : {scene_, folder_.file("./scene.toml"), link}) {
+        SCOPED_TRACE(output);
+        for (const char* flag : {"--stats-json", "--trace"})
+            expect_failure(run_raymill({"render", scene_, "-o", folder_.file("a.exr"), flag, output}), 2,
+                           output + " is what this reads");
+        expect_failure(run_raymill({"explain", scene_, "--pixel", "1,1", "--obj", output}), 2, "is what this reads");
+        EXPECT_EQ(read_bytes(scene_), scene);
+    }
+    EXPECT_EQ(folder_.entries(), 2);  // the scene and the link
 }
 
 TEST_F(Flags, of_silence_leave_nothing_to_read) {
