@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "bvh/bvh.hpp"
 #include "cli/arguments.hpp"
@@ -70,15 +71,18 @@ class OutputFolder {
 };
 
 /// Samples per pixel with which a frame takes about as long as wanted: timed with ever more samples until the time is
-/// long enough to tell.
-int choose_samples(const Sweeper& sweeper, Scene& scene, const InterruptGuard& guard) {
+/// long enough to tell. Nothing if an interrupt comes; `scene` is then as it was.
+std::optional<int> choose_samples(const Sweeper& sweeper, Scene& scene) {
     constexpr double long_enough = wanted_seconds / 8;
     constexpr int step = 8;
-    for (scene.settings.spp = 1;; scene.settings.spp = std::min(step * scene.settings.spp, most_chosen_samples)) {
-        const double seconds = sweeper.time_frame();
-        const int spp = scene.settings.spp;
-        if (seconds < long_enough && spp < most_chosen_samples && !guard.interrupted()) continue;
-        return std::clamp(static_cast<int>(std::lround(spp * wanted_seconds / seconds)), 1, most_chosen_samples);
+    const int scene_samples = scene.settings.spp;
+    for (int spp = 1;; spp = std::min(step * spp, most_chosen_samples)) {
+        scene.settings.spp = spp;
+        const std::optional<double> seconds = sweeper.time_frame();
+        scene.settings.spp = scene_samples;
+        if (!seconds) return std::nullopt;
+        if (*seconds < long_enough && spp < most_chosen_samples) continue;
+        return std::clamp(static_cast<int>(std::lround(spp * wanted_seconds / *seconds)), 1, most_chosen_samples);
     }
 }
 
@@ -146,14 +150,15 @@ int profile_scene(const ProfileArguments& arguments) {
     const InterruptGuard guard;
     ProgressBar bar(!arguments.quiet);
     Sweeper sweeper(arguments.device, lists, scene, bvh, guard, bar);
-    if (!arguments.scene.spp) {
-        scene.settings.spp = choose_samples(sweeper, scene, guard);
+    const std::optional<int> chosen = arguments.scene.spp ? std::nullopt : choose_samples(sweeper, scene);
+    if (chosen) {
+        scene.settings.spp = *chosen;
         if (!arguments.quiet)
             fmt::print(stderr,
                        "frames of {} spp, so that one takes about a second (the scene has {}; --spp changes it)\n",
                        scene.settings.spp, scene_samples);
     }
-    profile::Sweep sweep = describe(scene, sweeper.device(), scene_samples, !arguments.scene.spp);
+    profile::Sweep sweep = describe(scene, sweeper.device(), scene_samples, chosen.has_value());
     clock.timeline.measure("sweep", [&] { sweeper.run(sweep); });
     write_files(folder, sweep, whole_run(clock, sweep, start));
 
