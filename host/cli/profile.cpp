@@ -142,12 +142,12 @@ int profile_scene(const ProfileArguments& arguments) {
     Scene scene = clock.timeline.measure("load scene", [&] { return arguments.scene.load(); });
     const int scene_samples = scene.settings.spp;
     if (!arguments.quiet) print_warnings(scene.warnings);
+    const InterruptGuard guard;  // from here on there is a folder that must not stay empty
     const OutputFolder folder(arguments.output.empty() ? default_output(arguments.scene.file) : arguments.output);
     const Bvh bvh = clock.timeline.measure("build hierarchy", [&] {
         return build_bvh(scene.vertices, scene.triangles, scene.spheres, arguments.device.bvh_options());
     });
 
-    const InterruptGuard guard;
     ProgressBar bar(!arguments.quiet);
     Sweeper sweeper(arguments.device, lists, scene, bvh, guard, bar);
     const std::optional<int> chosen = arguments.scene.spp ? std::nullopt : choose_samples(sweeper, scene);
