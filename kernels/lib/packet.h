@@ -14,6 +14,7 @@
 #define COHERENT_SPREAD 0.7f
 #define FEWEST_TOGETHER 20  // rays of a packet
 #define FEWEST_AT_A_CHILD 6  // rays that meet a child; fewer fly on alone below it
+#define MOST_HANDED_OVER 2   // times a ray is so on average; then all go their own ways
 
 
 /// A block of triangles as all rays of a packet see it: corners along the axes of its triangle frame, from the origin of a
@@ -241,6 +242,9 @@ static inline bool visit_spheres_groups(Packet* p, global const SphereBlock* blo
     return found;
 }
 
+/// One bit a ray.
+static inline ulong all_rays(const RayChunk* c) { return c->count < CHUNK ? (1ul << c->count) - 1ul : ~0ul; }
+
 /// Finds the closest hit of every ray of a coherent packet among the primitives of the hierarchy, or with any_hit whether
 /// there is one.
 static void traverse_packet(const Geometry* geometry, Packet* p, bool any_hit) {
@@ -248,12 +252,17 @@ static void traverse_packet(const Geometry* geometry, Packet* p, bool any_hit) {
     ulong stack[STACK_SIZE], stack_rays[STACK_SIZE];
     stack_rays[0] = ~0ul;
     stack[0] = (ulong)(ALL_GROUPS << ENTRY_GROUPS_SHIFT) << 32;
-    uint top = 1;
+    uint top = 1, handed_over = 0;
     while (top > 0) {
         const ulong item = stack[--top];
         const uint distance = (uint)(item >> 32), child = (uint)item;
         if (as_float(distance & ~(7u | ALL_GROUPS << ENTRY_GROUPS_SHIFT)) > p->farthest_of_all) continue;
         if (popcount(stack_rays[top]) < FEWEST_AT_A_CHILD) {
+            handed_over += popcount(stack_rays[top]);
+            if (handed_over > MOST_HANDED_OVER * p->rays.count) {
+                fly_rays(geometry, &p->rays, all_rays(&p->rays), ROOT, any_hit);
+                return;
+            }
             if (fly_rays(geometry, &p->rays, stack_rays[top], child, any_hit)) update_farthest(p);
             continue;
         }
@@ -282,9 +291,6 @@ static void traverse_packet(const Geometry* geometry, Packet* p, bool any_hit) {
         if (found) update_farthest(p);
     }
 }
-
-/// One bit a ray.
-static inline ulong all_rays(const RayChunk* c) { return c->count < CHUNK ? (1ul << c->count) - 1ul : ~0ul; }
 
 /// The rays of one octant, one bit each.
 static inline ulong rays_of_octant(const RayChunk* c, uint octant) {
