@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <map>
 
 #include "common/child_process.hpp"
@@ -54,6 +55,21 @@ std::vector<std::string> helper_command(const DeviceArguments& arguments) {
     return command;
 }
 
+/// One number of a CountFlag, or nothing where it makes no sense.
+std::optional<std::uint32_t> count(std::string_view text, const CountFlag& flag) {
+    if (!flag.word.empty() && text == flag.word) return 0;
+    const std::size_t units = std::string_view("kKmM").find(text.empty() ? ' ' : text.back());
+    const int shift = units == std::string_view::npos ? 0 : units < 2 ? 10 : 20;
+    if (shift > 0) text.remove_suffix(1);
+    const auto value = number<std::uint64_t>(text);
+    if (!value || *value < 1 || *value > flag.largest || *value << shift > flag.largest) return std::nullopt;
+    return static_cast<std::uint32_t>(*value << shift);
+}
+
+std::string range_text(const CountFlag& flag) {
+    return fmt::format("1 to {}{}", flag.largest, flag.word.empty() ? "" : " or " + flag.word);
+}
+
 }  // namespace
 
 std::pair<int, int> parse_size(const std::string& text) {
@@ -98,23 +114,34 @@ std::uint64_t parse_bytes(const std::string& text) {
     return static_cast<std::uint64_t>(bytes);
 }
 
-std::vector<std::uint32_t> parse_counts(const std::string& flag, const std::string& list, std::uint32_t largest,
-                                        const std::string& word) {
+void check_keeps(const std::string& input, const std::string& output) {
+    std::error_code missing;
+    if (std::filesystem::equivalent(input, output, missing))
+        throw UsageError(fmt::format("{} is what this reads: choose another file to write", output));
+}
+
+void CountFlag::add_to(CLI::App& command, std::uint32_t& value, const std::string& description) const {
+    command
+        .add_option_function<std::string>(
+            name, [flag = *this, &value](const std::string& text) { value = flag.parse(text); }, description)
+        ->type_name(word.empty() ? "N" : "N|" + word);
+}
+
+std::uint32_t CountFlag::parse(const std::string& text) const {
+    const auto value = count(text, *this);
+    if (!value)
+        throw UsageError(fmt::format("{} {}: give a number from {}, as in 64 or 16k", name, text, range_text(*this)));
+    return *value;
+}
+
+std::vector<std::uint32_t> CountFlag::parse_list(const std::string& list) const {
     std::vector<std::uint32_t> counts;
-    for (std::string_view item : split(list, ',')) {
-        if (!word.empty() && item == word) {
-            counts.push_back(0);
-            continue;
-        }
-        const std::size_t units = std::string_view("kKmM").find(item.empty() ? ' ' : item.back());
-        const int shift = units == std::string_view::npos ? 0 : units < 2 ? 10 : 20;
-        if (shift > 0) item.remove_suffix(1);
-        const auto value = number<std::uint64_t>(item);
-        if (!value || *value < 1 || *value > largest || *value << shift > largest)
-            throw UsageError(
-                fmt::format("{} {}: give numbers from 1 to {}{}, with commas between them, as in 1k,64k,1M", flag, list,
-                            largest, word.empty() ? "" : fmt::format(" or {}", word)));
-        counts.push_back(static_cast<std::uint32_t>(*value << shift));
+    for (const std::string_view item : split(list, ',')) {
+        const auto value = count(item, *this);
+        if (!value)
+            throw UsageError(fmt::format("{} {}: give numbers from {}, with commas between them, as in 1k,64k,1M", name,
+                                         list, range_text(*this)));
+        counts.push_back(*value);
     }
     std::ranges::sort(counts);
     const auto repeated = std::ranges::unique(counts);
@@ -176,15 +203,12 @@ void DeviceArguments::add_memory_to(CLI::App& command) {
 
 void DeviceArguments::add_without_memory_to(CLI::App& command) {
     add_what_never_varies_to(command);
-    command.add_option("--threads", threads, "Compute units to use; all by default")
-        ->type_name("N")
-        ->check(CLI::Range(1u, most_threads));
-    command.add_option("--queue-capacity", queue_capacity, "Rays of a batch; the image does not depend on it")
-        ->type_name("N")
-        ->check(CLI::Range(1u, largest_queue_capacity));
-    command.add_option("--work-group", work_group, "Work-items of a group; the image does not depend on it")
-        ->type_name("N")
-        ->check(CLI::Range(1u, largest_work_group));
+    threads_flag.add_to(command, threads, "Compute units to use; all by default");
+    queue_capacity_flag.add_to(command, queue_capacity,
+                               "Rays of a batch, as in 16k; k is 1024, M 1024 k; the image does not depend on it");
+    work_group_flag.add_to(
+        command, work_group,
+        "Work-items of a group; auto (default) is what suits each stage; the image does not depend on it");
 }
 
 void DeviceArguments::add_fixed_to(CLI::App& command) {

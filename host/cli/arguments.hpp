@@ -33,11 +33,6 @@ struct SceneArguments {
     Scene load() const;
 };
 
-// What --queue-capacity, --work-group and --threads accept, from 1 on.
-inline constexpr std::uint32_t largest_queue_capacity = 1u << 28;
-inline constexpr std::uint32_t largest_work_group = 1u << 20;
-inline constexpr std::uint32_t most_threads = 65536;
-
 /// Which device renders, and in how much memory.
 struct DeviceArguments {
     std::string device;
@@ -72,9 +67,26 @@ Crop parse_crop(const std::string& text);
 /// "512M", "2GiB", "1000000" to bytes: K, M, G and T are powers of 1024. Throws UsageError.
 std::uint64_t parse_bytes(const std::string& text);
 
-/// "1k,64k,1M" to numbers from 1 to `largest`, sorted, each once: k is 1024, M 1024 squared. A word that is `word`, if
-/// that is not empty, stands for 0. `flag` is named in the error. Throws UsageError.
-std::vector<std::uint32_t> parse_counts(const std::string& flag, const std::string& list, std::uint32_t largest,
-                                        const std::string& word = {});
+/// Throws UsageError if writing `output`, which may be missing or empty, would replace `input`.
+void check_keeps(const std::string& input, const std::string& output);
+
+/// What --queue-capacity, --work-group and --threads are given: numbers from 1 to `largest`, where k is 1024 and M 1024
+/// squared, or `word`, if that is not empty, which stands for 0.
+struct CountFlag {
+    std::string name;  // as in errors
+    std::uint32_t largest;
+    std::string word{};
+
+    /// The option of a command that takes one number, which `value` receives. Parsing throws UsageError.
+    void add_to(CLI::App& command, std::uint32_t& value, const std::string& description) const;
+    /// "64k" to a number. Throws UsageError.
+    std::uint32_t parse(const std::string& text) const;
+    /// "1k,64k,1M" to numbers, sorted, each once. Throws UsageError.
+    std::vector<std::uint32_t> parse_list(const std::string& list) const;
+};
+
+inline const CountFlag queue_capacity_flag{"--queue-capacity", 1u << 28};
+inline const CountFlag work_group_flag{"--work-group", 1u << 20, "auto"};
+inline const CountFlag threads_flag{"--threads", 65536, "all"};
 
 }  // namespace raymill

@@ -58,7 +58,10 @@ int explain(const ExplainArguments& arguments) {
     if (arguments.sample && *arguments.sample >= static_cast<std::uint32_t>(scene.settings.spp))
         throw UsageError(fmt::format("--sample {}: the pixel has {} samples, counted from 0", *arguments.sample,
                                      scene.settings.spp));
-    if (!arguments.obj.empty()) check_writable(arguments.obj);
+    if (!arguments.obj.empty()) {
+        check_keeps(arguments.scene.file, arguments.obj);
+        check_writable(arguments.obj);
+    }
     print_warnings(scene.warnings);
     verify::crop_to_pixel(scene.settings, x, y);
     // One pixel needs no more than this; the queues of a whole frame would only take time to set up.

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "bvh/bvh.hpp"
 #include "cli/arguments.hpp"
@@ -40,9 +41,8 @@ struct ProfileArguments {
     bool quiet = false;
 
     SweepLists lists() const {
-        return {parse_counts("--queue-capacity", queue_capacities, largest_queue_capacity),
-                parse_counts("--work-group", work_groups, largest_work_group, "auto"),
-                parse_counts("--threads", threads, most_threads, "all"), repeats};
+        return {queue_capacity_flag.parse_list(queue_capacities), work_group_flag.parse_list(work_groups),
+                threads_flag.parse_list(threads), repeats};
     }
 };
 
@@ -71,15 +71,18 @@ class OutputFolder {
 };
 
 /// Samples per pixel with which a frame takes about as long as wanted: timed with ever more samples until the time is
-/// long enough to tell.
-int choose_samples(const Sweeper& sweeper, Scene& scene, const InterruptGuard& guard) {
+/// long enough to tell. Nothing if an interrupt comes; `scene` is then as it was.
+std::optional<int> choose_samples(const Sweeper& sweeper, Scene& scene) {
     constexpr double long_enough = wanted_seconds / 8;
     constexpr int step = 8;
-    for (scene.settings.spp = 1;; scene.settings.spp = std::min(step * scene.settings.spp, most_chosen_samples)) {
-        const double seconds = sweeper.time_frame();
-        const int spp = scene.settings.spp;
-        if (seconds < long_enough && spp < most_chosen_samples && !guard.interrupted()) continue;
-        return std::clamp(static_cast<int>(std::lround(spp * wanted_seconds / seconds)), 1, most_chosen_samples);
+    const int scene_samples = scene.settings.spp;
+    for (int spp = 1;; spp = std::min(step * spp, most_chosen_samples)) {
+        scene.settings.spp = spp;
+        const std::optional<double> seconds = sweeper.time_frame();
+        scene.settings.spp = scene_samples;
+        if (!seconds) return std::nullopt;
+        if (*seconds < long_enough && spp < most_chosen_samples) continue;
+        return std::clamp(static_cast<int>(std::lround(spp * wanted_seconds / *seconds)), 1, most_chosen_samples);
     }
 }
 
@@ -139,22 +142,23 @@ int profile_scene(const ProfileArguments& arguments) {
     Scene scene = clock.timeline.measure("load scene", [&] { return arguments.scene.load(); });
     const int scene_samples = scene.settings.spp;
     if (!arguments.quiet) print_warnings(scene.warnings);
+    const InterruptGuard guard;  // from here on there is a folder that must not stay empty
     const OutputFolder folder(arguments.output.empty() ? default_output(arguments.scene.file) : arguments.output);
     const Bvh bvh = clock.timeline.measure("build hierarchy", [&] {
         return build_bvh(scene.vertices, scene.triangles, scene.spheres, arguments.device.bvh_options());
     });
 
-    const InterruptGuard guard;
     ProgressBar bar(!arguments.quiet);
     Sweeper sweeper(arguments.device, lists, scene, bvh, guard, bar);
-    if (!arguments.scene.spp) {
-        scene.settings.spp = choose_samples(sweeper, scene, guard);
+    const std::optional<int> chosen = arguments.scene.spp ? std::nullopt : choose_samples(sweeper, scene);
+    if (chosen) {
+        scene.settings.spp = *chosen;
         if (!arguments.quiet)
             fmt::print(stderr,
                        "frames of {} spp, so that one takes about a second (the scene has {}; --spp changes it)\n",
                        scene.settings.spp, scene_samples);
     }
-    profile::Sweep sweep = describe(scene, sweeper.device(), scene_samples, !arguments.scene.spp);
+    profile::Sweep sweep = describe(scene, sweeper.device(), scene_samples, chosen.has_value());
     clock.timeline.measure("sweep", [&] { sweeper.run(sweep); });
     write_files(folder, sweep, whole_run(clock, sweep, start));
 
@@ -180,7 +184,7 @@ Command add_profile_command(CLI::App& app) {
     command.add_option("--work-group", arguments->work_groups, "Work-items of a group; auto is what suits each stage")
         ->type_name("LIST")
         ->capture_default_str();
-    command.add_option("--threads", arguments->threads, "Compute units to use")
+    command.add_option("--threads", arguments->threads, "Compute units to use; all is every one")
         ->type_name("LIST")
         ->capture_default_str();
     command.add_option("--repeats", arguments->repeats, "Timed frames of each setting; their median counts")

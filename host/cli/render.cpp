@@ -106,7 +106,7 @@ profile::Detail detail_of(const RenderArguments& arguments) {
     return arguments.stats ? profile::Detail::totals : profile::Detail::none;
 }
 
-/// Throws UsageError where one file would replace another, OutputError where one could not be written.
+/// Throws UsageError where one file would replace another or the scene, OutputError where one could not be written.
 void check_outputs(const RenderArguments& arguments, const FrameCaptures& captures) {
     std::set<std::filesystem::path> seen;
     std::vector<std::string> files = captures.files();
@@ -118,6 +118,7 @@ void check_outputs(const RenderArguments& arguments, const FrameCaptures& captur
                 fmt::format("{} is to hold two things at once: give -o, --stats-json, --trace and --capture files of "
                             "their own",
                             file));
+        check_keeps(arguments.scene.file, file);
         check_writable(file);
     }
 }

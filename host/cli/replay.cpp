@@ -146,7 +146,11 @@ nlohmann::ordered_json to_json(const ReplayArguments& arguments, const capture::
 int replay(const ReplayArguments& arguments) try {
     const RenderOptions options = arguments.device.options();
     const auto [capture, scene] = capture::load_capture(arguments.file, arguments.scene, "--scene");
-    if (!arguments.json_file.empty()) check_writable(arguments.json_file);
+    if (!arguments.json_file.empty()) {
+        check_keeps(arguments.file, arguments.json_file);
+        check_keeps(scene.file, arguments.json_file);
+        check_writable(arguments.json_file);
+    }
     print_warnings(scene.warnings);
     const Device device = arguments.device.open();
     const Bvh bvh = build_bvh(scene.vertices, scene.triangles, scene.spheres, arguments.device.bvh_options());

@@ -8,6 +8,9 @@ namespace raymill {
 
 namespace {
 
+// An interrupt may end a frame, and also make a device fail: when a signal comes, LLVM removes the files that it is
+// about to write, and the kernels do not build. Neither says anything of the setting.
+
 /// The first wave alone: it compiles or loads every kernel and touches the memory of every queue that it reaches.
 void warm_up(Renderer& renderer) {
     renderer.render([](double) { return false; });
@@ -41,10 +44,14 @@ RenderOptions Sweeper::options_of(const profile::SweepSetting& setting) const {
     return options;
 }
 
-double Sweeper::time_frame() const {
+std::optional<double> Sweeper::time_frame() const try {
     Renderer renderer(device(), scene_, bvh_, arguments_.options());
     warm_up(renderer);
-    return renderer.render([this](double) { return !guard_.interrupted(); }).seconds;
+    const Frame frame = renderer.render([this](double) { return !guard_.interrupted(); });
+    return is_whole(frame) ? std::optional(frame.seconds) : std::nullopt;
+} catch (const DeviceError&) {
+    if (!guard_.interrupted()) throw;
+    return std::nullopt;
 }
 
 void Sweeper::add_settings(profile::Sweep& sweep) const {
@@ -93,6 +100,7 @@ void Sweeper::visit(profile::Sweep& sweep, std::size_t index) {
     try {
         measure(sweep, index);
     } catch (const DeviceError& error) {
+        if (guard_.interrupted()) return;
         setting.skipped = error.what();
         setting.frames.clear();
         setting.profile.reset();
@@ -143,7 +151,7 @@ void Sweeper::keep_profile(profile::Sweep& sweep, std::size_t index, profile::Ru
     sweep.settings[index].profile = std::move(run);
 }
 
-bool Sweeper::record_timeline(profile::Sweep& sweep) {
+bool Sweeper::record_timeline(profile::Sweep& sweep) try {
     const std::size_t best_index = *profile::find(sweep).best;
     const profile::SweepSetting& best = sweep.settings[best_index];
     RunClock clock;
@@ -156,6 +164,9 @@ bool Sweeper::record_timeline(profile::Sweep& sweep) {
     sweep.timeline = std::move(run);
     sweep.timeline_setting = best_index;
     return true;
+} catch (const DeviceError&) {
+    if (!guard_.interrupted()) throw;
+    return false;
 }
 
 Progress Sweeper::progress(const profile::SweepSetting& setting) {

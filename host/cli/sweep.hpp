@@ -35,8 +35,8 @@ class Sweeper {
     /// With the most threads.
     const Device& device() const { return devices_.rbegin()->second; }
 
-    /// Seconds of a frame at the default capacity; less than a frame's if an interrupt comes.
-    double time_frame() const;
+    /// Seconds of a frame at the default capacity; nothing if an interrupt comes.
+    std::optional<double> time_frame() const;
 
     /// Renders everything and adds it to `sweep`, which is complete unless an interrupt comes in between. Throws
     /// DeviceError if no setting fits.

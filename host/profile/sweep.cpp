@@ -112,7 +112,10 @@ std::string headline(const Sweep& sweep, const Finding& finding) {
     words += fmt::format(
         "Best: {} rays, work-group {}{}: {:.2f} Mrays/s", best.queue_capacity, work_group_name(best.work_group),
         threads.size() > 1 ? fmt::format(", {} threads", best.threads) : "", 1e-6 * rays_per_second(best));
-    return words + knee_words(sweep, finding);
+    words += knee_words(sweep, finding);
+    const bool compared = std::ranges::count_if(sweep.settings, &SweepSetting::measured) > 1;
+    if (compared && best.frames.size() == 1) words += ". One frame of each does not tell speed from chance";
+    return words;
 }
 
 }  // namespace raymill::profile

@@ -84,7 +84,10 @@ std::string depths(const FrameProfile& frame) {
         fmt::format("\n{:<8}{:>8}{:>14}{:>11}{:>9}{:>9}{:>9}{:>9}{:>9}{:>14}{:>11}\n", "Depth", "waves", "rays",
                     "queue full", "missed%", "absorb.%", "limit%", "weight%", "kids/hit", "shadow rays", "blocked");
     DepthTotal sum;
+    std::size_t reached = 0;
     for (const DepthTotal& depth : frame.depths) {
+        if (depth.waves == 0) break;  // what is deeper has none either
+        ++reached;
         text += depth_line(std::to_string(depth.depth), depth);
         sum.waves += depth.waves;
         sum.popped += depth.popped;
@@ -93,6 +96,7 @@ std::string depths(const FrameProfile& frame) {
         sum.shadow_rays += depth.shadow_rays;
         sum.shadow_blocked += depth.shadow_blocked;
     }
+    if (reached < frame.depths.size()) text += fmt::format("  {} and deeper: no rays\n", frame.depths[reached].depth);
     sum.fates = frame.fates();
     if (frame.depths.size() > 1) text += depth_line("all", sum);
     const double rays = static_cast<double>(sum.popped + sum.shadow_rays);

@@ -139,6 +139,15 @@ TEST_F(Capture, that_is_none_or_damaged_is_refused_before_anything_is_written) {
     EXPECT_FALSE(fs::exists(json_file));
 }
 
+TEST_F(Capture, and_its_scene_are_not_replaced_by_what_is_written_of_them) {
+    const std::string file = captured(), bytes = read_bytes(file);
+    expect_failure(run_raymill({"replay", file, "--json", file}), 2, file + " is what this reads");
+    expect_failure(run_raymill({"replay", file, "--json", scene_}), 2, scene_ + " is what this reads");
+    expect_failure(render({"0,shade," + scene_}), 2, scene_ + " is what this reads");
+    EXPECT_TRUE(read_bytes(file) == bytes) << "the capture has changed";
+    EXPECT_EQ(read_bytes(scene_), small_scene());
+}
+
 TEST_F(Capture, that_the_frame_cannot_have_is_refused_and_nothing_is_written) {
     const std::string file = folder_.file("queue.wave");
     expect_failure(render({"0,paint," + file}), 2, "\"paint\" is no stage");

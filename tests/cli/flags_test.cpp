@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "exr_pixels.hpp"
@@ -56,6 +57,42 @@ TEST_F(Flags, that_make_no_sense_are_refused_by_name) {
         // With an equals sign, so that a value that begins with a minus is one.
         expect_failure(check({flag[0] + "=" + flag[1]}), 2, flag[0]);
     }
+}
+
+TEST_F(Flags, of_the_device_that_make_no_sense_are_refused_by_name_and_say_what_would) {
+    for (const char* flag : {"--queue-capacity", "--work-group", "--threads"})
+        for (const char* text : {"0", "-1", "1k,2k", "1.5k", "1kk", "k", "16q", "lots", "0x10", "+4", " 4", "512M",
+                                 "18446744073709551615k"}) {
+            SCOPED_TRACE(std::string(flag) + " '" + text + "'");
+            const Outcome outcome = check({std::string(flag) + "=" + text});
+            expect_failure(outcome, 2, std::string(flag) + " " + text + ": give a number from 1 to ");
+            EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
+        }
+    expect_failure(check({"--queue-capacity="}), 2, "--queue-capacity");
+    expect_failure(check({"--queue-capacity", "auto"}), 2, "--queue-capacity");
+    expect_failure(check({"--work-group", "lots"}), 2, " or auto, ");
+    expect_failure(check({"--threads", "auto"}), 2, " or all, ");
+}
+
+TEST_F(Flags, of_the_device_take_the_units_and_words_of_profile) {
+    const std::string stats = folder_.file("stats.json");
+    const auto run = [&](const std::string& capacity, const std::string& work_group, const std::string& threads) {
+        const Outcome outcome =
+            run_raymill({"render", scene_, "-o", folder_.file("a.exr"), "--stats-json", stats, "--queue-capacity",
+                         capacity, "--work-group", work_group, "--threads", threads});
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        return nlohmann::json::parse(read_bytes(stats)).at("run");
+    };
+    const auto in_thousands = run("16k", "auto", "1");
+    EXPECT_EQ(in_thousands.at("queue_capacity"), 16384);
+    EXPECT_EQ(in_thousands.at("work_group"), 0);
+    EXPECT_EQ(in_thousands.at("compute_units"), 1);
+    const auto all = run("1m", "8", "all");
+    EXPECT_EQ(all.at("queue_capacity"), 1 << 20);
+    EXPECT_EQ(all.at("work_group"), 8);
+    render({"--stats-json", stats});
+    EXPECT_EQ(all.at("compute_units"), nlohmann::json::parse(read_bytes(stats)).at("run").at("compute_units"));
+    EXPECT_EQ(check({"--queue-capacity", "2K"}).out, check({"--queue-capacity", "2048"}).out);
 }
 
 TEST_F(Flags, say_the_size) {
@@ -151,9 +188,9 @@ TEST_F(Flags, of_statistics_files_write_both_beside_the_same_picture) {
     EXPECT_FALSE(json.at("launches").at("rows").empty());
     std::vector<std::string> spans;
     for (const auto& span : json.at("times").at("spans")) spans.push_back(span.at("name"));
-    const std::vector<std::string> expected = {"load scene",   "open device",     "build hierarchy", "build kernels",
-                                               "upload scene", "allocate queues", "compile kernels", "render",
-                                               "write picture"};
+    const std::vector<std::string> expected = {"load scene",      "open device",  "build hierarchy",
+                                               "build kernels",   "upload scene", "allocate queues",
+                                               "compile kernels", "render",       "write picture"};
     EXPECT_EQ(spans, expected);
     EXPECT_FALSE(nlohmann::json::parse(read_bytes(trace)).at("traceEvents").empty());
 }
@@ -164,6 +201,20 @@ TEST_F(Flags, of_statistics_files_that_cannot_be_written_are_refused_before_rend
                    "where.json");
     expect_failure(run_raymill({"render", scene_, "-o", picture, "--stats-json", picture}), 2, "two things at once");
     EXPECT_EQ(folder_.entries(), 1);
+}
+
+TEST_F(Flags, of_outputs_do_not_replace_the_scene) {
+    const std::string scene = read_bytes(scene_), link = folder_.file("link.json");
+    std::filesystem::create_symlink(scene_, link);
+    for (const std::string& output : {scene_, folder_.file("./scene.toml"), link}) {
+        SCOPED_TRACE(output);
+        for (const char* flag : {"--stats-json", "--trace"})
+            expect_failure(run_raymill({"render", scene_, "-o", folder_.file("a.exr"), flag, output}), 2,
+                           output + " is what this reads");
+        expect_failure(run_raymill({"explain", scene_, "--pixel", "1,1", "--obj", output}), 2, "is what this reads");
+        EXPECT_EQ(read_bytes(scene_), scene);
+    }
+    EXPECT_EQ(folder_.entries(), 2);  // the scene and the link
 }
 
 TEST_F(Flags, of_silence_leave_nothing_to_read) {

@@ -1,6 +1,7 @@
 // The table, the JSON and the trace of a profile.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -123,6 +124,20 @@ TEST(Table, has_a_row_for_every_span_stage_and_depth_and_fits_a_terminal) {
                             "resolve", "0", "1", "all"})
         EXPECT_TRUE(first_words.contains(row)) << row;
     EXPECT_FALSE(first_words.contains("features")) << "a stage that did not run";
+}
+
+TEST(Table, has_one_line_for_all_depths_that_no_ray_reached) {
+    RunProfile run = run_example();
+    const std::string all = table(run);
+    for (const int depth : {2, 3, 4}) {
+        run.frame.depths.emplace_back().depth = depth;
+        run.frame.depths.back().capacity = 1000;
+    }
+    const std::string text = table(run), line = "  2 and deeper: no rays\n";
+    ASSERT_NE(text.find(line), std::string::npos) << text;
+    EXPECT_EQ(all.find("and deeper"), std::string::npos);
+    EXPECT_EQ(std::ranges::count(text, '\n'), std::ranges::count(all, '\n') + 1);
+    EXPECT_NE(text.find(line + "  all"), std::string::npos) << text;
 }
 
 }  // namespace

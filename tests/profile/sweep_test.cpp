@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "sweep_example.hpp"
 
 namespace raymill::profile {
@@ -108,6 +110,16 @@ TEST(Headline, says_that_there_is_no_knee) {
     EXPECT_TRUE(headline(sweep, find(sweep)).ends_with("no knee: queues of 64 rays are about as good"));
     sweep.settings[0] = setting_of(64, 0, {6e-6, 6e-6});
     EXPECT_TRUE(headline(sweep, find(sweep)).ends_with("no knee: the smallest queue is the best"));
+}
+
+TEST(Headline, of_single_frames_says_how_little_they_tell) {
+    Sweep sweep = sweep_example();
+    for (SweepSetting& setting : sweep.settings) setting.frames.resize(std::min<std::size_t>(setting.frames.size(), 1));
+    EXPECT_TRUE(
+        headline(sweep, find(sweep)).ends_with("lose 6 % or more. One frame of each does not tell speed from chance"))
+        << headline(sweep, find(sweep));
+    sweep.settings = {sweep.settings[2]};
+    EXPECT_EQ(headline(sweep, find(sweep)), "Best: 256 rays, work-group auto: 104.35 Mrays/s");
 }
 
 TEST(Headline, of_an_interrupted_sweep_says_so_even_if_nothing_was_measured) {

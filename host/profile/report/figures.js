@@ -279,17 +279,20 @@ function memoryFigure() {
     const sizes = measured.map(mebibytes), [from, to] = [Math.min(...sizes), Math.max(...sizes)];
     const x = logarithmic(from < to ? [from / 1.15, to * 1.15] : [from / 2, to * 2], [a.left, a.right]);
     const values = steps(Math.max(...measured.map(megarays)) * 1.08), y = linear([0, last(values)], [a.bottom, a.top]);
-    let body = valueAxis(a, y, values, 'million rays per second'), free = [];
+    let body = valueAxis(a, y, values, 'million rays per second'), taken = [];
     [...series.values()].forEach((settings, i) => {
         body += seriesMarks(settings, setting => x(mebibytes(setting)), y, seriesColour(i), false);
     });
-    for (const setting of series.get(seriesKey(best))) {
+    const labelled = series.get(seriesKey(best));
+    for (const setting of [best, ...labelled.filter(one => one !== best)]) {
         const place = x(mebibytes(setting));
-        if (setting !== best && free.some(taken => Math.abs(taken - place) < 34)) continue;
-        free.push(place);
+        if (taken.some(other => Math.abs(other - place) < 34)) continue;
+        taken.push(place);
+        // Above the marks of all series there, so that none is hidden.
+        const highest = Math.max(
+            ...measured.filter(one => Math.abs(x(mebibytes(one)) - place) < 20).map(one => megarays(one)));
         body += words(
-            place, y(megarays(setting)) - 12, capacityName(setting.queue_capacity),
-            {kind: setting === best ? 'strong' : ''});
+            place, y(highest) - 12, capacityName(setting.queue_capacity), {kind: setting === best ? 'strong' : ''});
     }
     const first = 2 ** Math.ceil(Math.log2(from / 1.15)), marks = [];
     for (let size = first; size <= to * 1.15; size *= 2)

@@ -73,14 +73,17 @@ function valueAxis(a, scale, values, name, label = short) {
     return lines + words(16, (a.top + a.bottom) / 2, name, {kind: 'axis-name', turn: '-90'});
 }
 
-/** Marks below the plot at `positions` = [[x, text], ...]; texts that would touch are left out. */
+/** Marks below the plot at `positions` = [[x, text], ...]: smaller where texts would touch, and left out if they do. */
 function bottomAxis(a, positions, name) {
+    const half = (mark, size) => 0.33 * size * mark.length + 2;  // wide fonts have digits of 0.64 of their size
+    const touch = positions.some(
+        ([x, mark], i) => i > 0 && x - half(mark, 13) < positions[i - 1][0] + half(positions[i - 1][1], 13));
+    const size = touch ? 11 : 13;
     let free = -Infinity, text = rule(a.left, a.bottom, a.right, a.bottom, 'axis');
     for (const [x, mark] of positions) {
-        const half = 3.6 * mark.length + 2;
-        if (x - half < free) continue;
-        free = x + half;
-        text += rule(x, a.bottom, x, a.bottom + 5, 'axis') + words(x, a.bottom + 20, mark);
+        if (x - half(mark, size) < free) continue;
+        free = x + half(mark, size);
+        text += rule(x, a.bottom, x, a.bottom + 5, 'axis') + words(x, a.bottom + 20, mark, {size});
     }
     return text + words((a.left + a.right) / 2, a.height - 8, name, {kind: 'axis-name'});
 }

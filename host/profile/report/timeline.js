@@ -46,7 +46,7 @@ function lanes(name, launches) {
     const line = Math.max(9, Math.min(26, 400 / rows.length));
     const a = area(1000, line * rows.length + 62, {top: 6, bottom: 56}), from = launches[0].from,
           to = Math.max(...launches.map(launch => launch.to));
-    const x = linear([from, to], [a.left, a.right]), unit = to - from < 0.02 ? 1e6 : 1e3;
+    const x = linear([from, to], [a.left, a.right]), unit = to - from < 0.002 ? 1e6 : 1e3;
     let body = words(16, (a.top + a.bottom) / 2, 'depth', {kind: 'axis-name', turn: '-90'});
     rows.forEach((depth, r) => {
         const y = a.top + r * line;
