@@ -1,6 +1,6 @@
 // Reflected and refracted rays of a batch's hits.
 // Reads:  rays [first_ray, first_ray + count), hits [0, count).
-// Writes: children, from 0 on; counters->children, and parents where the frame is profiled.
+// Writes: children, up to `capacity` from first_child on; counters->children, and parents where the frame is profiled.
 // Next:   intersect, one level deeper.
 
 #include "lib/material.h"
@@ -60,7 +60,7 @@ kernel void secondary(global const Ray* rays, uint first_ray, uint count, global
                       global const Vertex* vertices, global const Triangle* triangles, global const Sphere* spheres,
                       global const Plane* planes, global const Material* materials, global const Texture* textures,
                       global const float* texels, constant SceneConstants* constants, global Ray* children,
-                      uint capacity, global Counters* counters, uint counted) {
+                      uint first_child, uint capacity, global Counters* counters, uint counted) {
     const World world = {vertices, triangles, spheres, planes, materials, textures, texels, constants};
     const uint begin = get_global_id(0) * CHUNK;
     const uint end = min(begin + CHUNK, count);
@@ -85,6 +85,6 @@ kernel void secondary(global const Ray* rays, uint first_ray, uint count, global
     ulong place = atom_add(&counters->children, (ulong)spawned);
     if (place + spawned > capacity) return;  // the host sees the count and stops
     // The reflected ones first: a chunk of the next level then has more rays that go the same way.
-    place = write_children(reflected, groups, children, place);
+    place = write_children(reflected, groups, children, first_child + place);
     write_children(refracted, groups, children, place);
 }

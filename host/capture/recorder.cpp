@@ -51,7 +51,8 @@ std::uint64_t queue_digest(const Device& device, Stage stage, const WaveView& vi
             return digest_of(
                 std::span<const ShadowRay>(packed_shadow_rays(device, view, segment_counts(device, view))));
         case Stage::secondary:
-            return digest_of(std::span<const Ray>(view.children->read(device, 0, view.children_count)));
+            return digest_of(
+                std::span<const Ray>(view.children->items.read(device, view.children->first, view.children->count)));
         default:
             return 0;
     }
@@ -114,7 +115,7 @@ std::uint64_t Recorder::items_out(const WaveView& view) const {
         case Stage::shade:
             return shadow_ray_count(device_, view);
         case Stage::secondary:
-            return view.children_count;
+            return view.children->count;
         default:  // generate writes what it takes; what shadow lets through only the film knows
             return 0;
     }

@@ -91,7 +91,7 @@ void Replay::launch(Piece& piece) {
         case Stage::shadow:
             return stages_.shadow(scene_, piece.shadow_rays, piece.segments, film_);
         default:
-            return stages_.secondary(scene_, rays, piece.hits, children_, film_);
+            return stages_.secondary(scene_, rays, piece.hits, {children_}, film_);
     }
 }
 
@@ -177,8 +177,7 @@ WaveView Replay::view() const {
             piece.hits,
             slots_,
             piece.shadow_rays,
-            &children_,
-            children,
+            QueueRange<Ray>{children_, 0, children},
             film_,
             piece.first_sample};
 }

@@ -55,7 +55,7 @@ void WaveRecorder::see(const std::string& stage, const WaveView& view) {
     } else if (stage == "shade") {
         take_shadow_rays(view);
     } else if (stage == "secondary") {
-        wave_->children = view.children->read(device_, 0, view.children_count);
+        wave_->children = view.children->items.read(device_, view.children->first, view.children->count);
     }
 }
 

@@ -121,7 +121,7 @@ void Renderer::compile(profile::Stage stage) {
         case profile::Stage::shadow:
             return stages_.shadow(device_scene_, shadow_queue_, 0, film_);
         case profile::Stage::secondary:
-            if (max_depth_ > 0) stages_.secondary(device_scene_, no_rays, hits_, queues_[1], film_);
+            if (max_depth_ > 0) stages_.secondary(device_scene_, no_rays, hits_, {queues_[1]}, film_);
             return;
         default:
             return;  // not of compiled_stages
@@ -163,15 +163,15 @@ void Renderer::trace_all(const Progress& progress) {
     const std::uint64_t samples = camera_samples(scene_);
     bool going_on = true;
     for (;;) {
-        std::optional<Batch> batch = waves_.next();
+        const std::uint64_t to_come = going_on ? samples - counts_.camera : 0;
+        std::optional<Batch> batch = waves_.next(to_come);
         if (!batch) {
-            if (!going_on || counts_.camera == samples) break;
-            const uint count =
-                static_cast<uint>(std::min<std::uint64_t>(plan_.queue_capacity, samples - counts_.camera));
+            if (to_come == 0) break;
+            const uint count = waves_.camera_batch(to_come);
             stages_.generate(device_scene_, counts_.camera, count, queues_[0]);
             counts_.camera += count;
             waves_.push(0, count);
-            batch = waves_.next();
+            batch = waves_.next(to_come);
             show("generate", *batch);
         }
         trace(*batch);
@@ -238,7 +238,7 @@ void Renderer::trace(const Batch& batch) {
     const bool goes_deeper = batch.depth < max_depth_;
     if (goes_deeper) {
         Buffer<Ray>& children = queues_[static_cast<std::size_t>(batch.depth) + 1];
-        stages_.secondary(device_scene_, rays, hits_, children, film_);
+        stages_.secondary(device_scene_, rays, hits_, {children, waves_.waiting(batch.depth + 1)}, film_);
     }
     if (!goes_deeper && !profiler_) {
         device_.queue.finish();
@@ -251,18 +251,20 @@ void Renderer::trace(const Batch& batch) {
 }
 
 void Renderer::take_children(const Batch& batch, std::uint64_t children) {
+    const uint first = waves_.waiting(batch.depth + 1);
     waves_.push(batch.depth + 1, children);
     counts_.secondary += children;
-    show("secondary", batch, {}, &queues_[static_cast<std::size_t>(batch.depth) + 1], static_cast<uint>(children));
+    const Buffer<Ray>& queue = queues_[static_cast<std::size_t>(batch.depth) + 1];
+    show("secondary", batch, {}, QueueRange<Ray>{queue, first, static_cast<uint>(children)});
 }
 
-void Renderer::show(const char* stage, const Batch& batch, SlotRange slots, const Buffer<Ray>* children,
-                    uint children_count) const {
+void Renderer::show(const char* stage, const Batch& batch, SlotRange slots,
+                    std::optional<QueueRange<Ray>> children) const {
     if (!observer_) return;
     device_.queue.finish();
     const QueueRange<Ray> rays{queues_[static_cast<std::size_t>(batch.depth)], batch.first, batch.count};
     const std::uint64_t first_sample = counts_.camera - std::min<std::uint64_t>(counts_.camera, batch.count);
-    observer_(stage, {batch, rays, hits_, slots, shadow_queue_, children, children_count, film_, first_sample});
+    observer_(stage, {batch, rays, hits_, slots, shadow_queue_, children, film_, first_sample});
 }
 
 }  // namespace raymill

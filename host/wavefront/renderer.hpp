@@ -71,10 +71,9 @@ struct WaveView {
     Batch batch;
     QueueRange<Ray> rays;
     const Buffer<Hit>& hits;
-    SlotRange slots;                 // light samples of this pass, for shade and shadow
-    const ShadowQueue& shadow_rays;  // as shade left it: segment = chunk * slots.count + slot
-    const Buffer<Ray>* children;     // after secondary
-    uint children_count;
+    SlotRange slots;                          // light samples of this pass, for shade and shadow
+    const ShadowQueue& shadow_rays;           // as shade left it: segment = chunk * slots.count + slot
+    std::optional<QueueRange<Ray>> children;  // after secondary
     const Film& film;
     std::uint64_t first_sample;  // camera sample of the first ray, after generate
 };
@@ -115,8 +114,8 @@ class Renderer {
     std::vector<float> resolve();
     void trace(const Batch& batch);
     void take_children(const Batch& batch, std::uint64_t children);
-    void show(const char* stage, const Batch& batch, SlotRange slots = {}, const Buffer<Ray>* children = nullptr,
-              uint children_count = 0) const;
+    void show(const char* stage, const Batch& batch, SlotRange slots = {},
+              std::optional<QueueRange<Ray>> children = {}) const;
 
     const Device& device_;
     const Scene& scene_;

@@ -148,12 +148,12 @@ void Stages::shadow(const DeviceScene& scene, const ShadowQueue& shadow_rays, ui
            film_flags(film));
 }
 
-void Stages::secondary(const DeviceScene& scene, QueueRange<Ray> rays, const Buffer<Hit>& hits, Buffer<Ray>& children,
+void Stages::secondary(const DeviceScene& scene, QueueRange<Ray> rays, const Buffer<Hit>& hits, QueueEnd<Ray> children,
                        Film& film) {
-    const uint capacity = static_cast<uint>(children.size());
+    const uint capacity = static_cast<uint>(children.items.size()) - children.first;
     launch(secondary_, {chunks(rays.count), rays.count}, rays.items, rays.first, rays.count, hits, scene.vertices,
            scene.triangles, scene.spheres, scene.planes, scene.materials, scene.textures, scene.texels, scene.constants,
-           children, capacity, film.counters, film.counted);
+           children.items, children.first, capacity, film.counters, film.counted);
 }
 
 void Stages::resolve(const Film& film, uint spp, Buffer<float>& pixels) {

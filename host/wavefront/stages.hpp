@@ -20,6 +20,13 @@ struct QueueRange {
     uint count = 0;
 };
 
+/// Where items are added to a queue: from `first` on.
+template <class T>
+struct QueueEnd {
+    Buffer<T>& items;
+    uint first = 0;
+};
+
 /// Segments of CHUNK shadow rays: one a chunk of hits and light sample.
 struct ShadowQueue {
     Buffer<ShadowRay> rays;
@@ -91,7 +98,7 @@ class Stages {
     void features(const DeviceScene& scene, QueueRange<Ray> rays, uint depth, const Buffer<Hit>& hits, Film& film);
     void shadow(const DeviceScene& scene, const ShadowQueue& shadow_rays, uint segments, Film& film);
     /// Counts its children in film.counters.children, from the value it finds there.
-    void secondary(const DeviceScene& scene, QueueRange<Ray> rays, const Buffer<Hit>& hits, Buffer<Ray>& children,
+    void secondary(const DeviceScene& scene, QueueRange<Ray> rays, const Buffer<Hit>& hits, QueueEnd<Ray> children,
                    Film& film);
     void resolve(const Film& film, uint spp, Buffer<float>& pixels);
 

@@ -37,8 +37,10 @@ struct QueueCounts {
     uint high_water = 0;  // most rays that it ever held
 };
 
-/// Fill levels of the queues. A batch is taken from the end of the deepest queue that is not empty; since all deeper
-/// ones are empty then, its children (at most two a ray) fit a queue of twice the capacity.
+/// Fill levels of the queues. Rays gather until they are half a batch, and the deepest queue that has so many goes
+/// first; so no deeper one has, and a batch's children (at most two a ray) fit behind those that wait in a queue of
+/// twice the capacity, if the batch leaves out a quarter at most. Once no camera rays are to come, the shallowest queue
+/// goes first: its children join those that wait, and each depth is emptied once.
 class Waves {
   public:
     /// capacity: largest batch, at least 1. max_depth: of the deepest rays.
@@ -47,12 +49,19 @@ class Waves {
     /// Rays that the queue of a depth holds.
     std::uint64_t queue_size(int depth) const { return depth == 0 ? capacity_ : 2 * std::uint64_t{capacity_}; }
 
-    /// Rays were pushed into the queue of depth `depth`, which was empty. Throws QueueOverflow if they cannot have
-    /// fitted.
+    /// Rays were pushed behind those that wait at `depth`. Throws QueueOverflow if they cannot have fitted.
     void push(int depth, std::uint64_t count);
 
-    /// Takes the next batch; nothing when all queues are empty.
-    std::optional<Batch> next();
+    /// Takes the next batch, from the end of its queue. Nothing if it is better to push camera rays first, of which
+    /// `camera_rays` are to come, or if there is nothing left to do.
+    std::optional<Batch> next(std::uint64_t camera_rays);
+
+    /// Rays that wait at `depth`.
+    uint waiting(int depth) const { return fill_.at(static_cast<std::size_t>(depth)); }
+
+    /// How many of the camera rays to come may be pushed at once, in whole chunks where there are more: one at least,
+    /// when next() has given nothing. They are the next batch.
+    uint camera_batch(std::uint64_t camera_rays) const;
 
     int max_depth() const { return static_cast<int>(fill_.size()) - 1; }
     /// Since construction or the last start().
@@ -63,6 +72,10 @@ class Waves {
     void check_drained() const;
 
   private:
+    /// The largest batch of a depth whose children surely fit.
+    uint largest_batch(int depth) const;
+    Batch take(int depth);
+
     uint capacity_;
     std::vector<uint> fill_;  // rays waiting, by depth
     std::vector<QueueCounts> counts_;

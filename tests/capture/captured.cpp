@@ -7,7 +7,8 @@ namespace raymill::capture {
 Written read_written(const Device& device, Stage stage, const WaveView& view) {
     Written written;
     if (stage == Stage::generate) written.rays = view.rays.items.read(device, view.rays.first, view.rays.count);
-    if (stage == Stage::secondary) written.rays = view.children->read(device, 0, view.children_count);
+    if (stage == Stage::secondary)
+        written.rays = view.children->items.read(device, view.children->first, view.children->count);
     if (stage == Stage::intersect) written.hits = view.hits.read(device, 0, view.rays.count);
     if (stage == Stage::shade) {
         const std::size_t segments = std::size_t{Stages::chunks(view.rays.count)} * view.slots.count;

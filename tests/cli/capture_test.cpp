@@ -55,7 +55,7 @@ TEST_F(Capture, of_every_stage_is_replayed_and_verified_and_leaves_the_picture_a
     const Outcome outcome = render(captures, {"--queue-capacity", "150"});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(outcome.out, "");
-    EXPECT_TRUE(contains(outcome.err, "launch 1 of shade at depth 0, of 3, 150 items")) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, "launch 1 of shade at depth 0, of 5, 64 items")) << outcome.err;
     EXPECT_TRUE(same_pixels(plain, read_picture(picture_)));
     for (const std::string& stage : stages) {
         const Outcome replayed = run_raymill({"replay", folder_.file(stage), "--repeats", "2"});

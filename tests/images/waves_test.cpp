@@ -21,13 +21,16 @@ Tally simulate(uint capacity, int max_depth, std::uint64_t camera_rays, Children
     Waves waves(capacity, max_depth);
     Tally tally(max_depth);
     for (;;) {
-        std::optional<Batch> batch = waves.next();
+        const std::uint64_t to_come = camera_rays - tally.pushed[0];
+        std::optional<Batch> batch = waves.next(to_come);
         if (!batch) {
-            const std::uint64_t count = std::min<std::uint64_t>(capacity, camera_rays - tally.pushed[0]);
-            if (count == 0) return tally;
+            if (to_come == 0) return tally;
+            const uint count = waves.camera_batch(to_come);
+            RC_ASSERT(count >= 1 && count <= to_come);
             waves.push(0, count);
             tally.pushed[0] += count;
-            batch = waves.next();
+            batch = waves.next(to_come - count);
+            RC_ASSERT(batch && batch->depth == 0 && batch->first == 0 && batch->count == count);
         }
         RC_ASSERT(batch && batch->count >= 1 && batch->count <= capacity);
         RC_ASSERT(std::uint64_t{batch->first} + batch->count <= waves.queue_size(batch->depth));
@@ -58,32 +61,59 @@ RC_GTEST_PROP(waves, hold_two_children_of_every_ray, ()) {
     for (int depth = 0; depth <= max_depth; ++depth) RC_ASSERT(tally.traced[depth] == camera_rays << depth);
 }
 
-TEST(waves, take_the_deepest_rays_first) {
+TEST(waves, take_the_deepest_half_batch_first) {
     Waves waves(10, 2);
     waves.push(0, 10);
-    EXPECT_EQ(waves.next()->depth, 0);
+    EXPECT_EQ(waves.next(100)->depth, 0);
     waves.push(1, 15);
-    const auto first = waves.next();
+    const auto first = waves.next(100);
     EXPECT_EQ(first->depth, 1);
     EXPECT_EQ(first->first, 5u);
     EXPECT_EQ(first->count, 10u);
+    waves.push(2, 6);
+    EXPECT_EQ(waves.next(100)->depth, 2);
+    EXPECT_EQ(waves.next(100)->count, 5u);
+    EXPECT_FALSE(waves.next(0));
+}
+
+TEST(waves, let_fewer_rays_wait_for_more) {
+    Waves waves(10, 2);
+    waves.push(0, 10);
+    waves.next(100);
+    waves.push(1, 4);
+    EXPECT_FALSE(waves.next(100)) << "camera rays are to come";
+    waves.push(0, waves.camera_batch(100));
+    EXPECT_EQ(waves.next(92)->count, 8u) << "sixteen children fit beside the four";
+    waves.push(1, 16);
+    EXPECT_EQ(waves.next(92)->first, 10u);
+}
+
+TEST(waves, empty_each_depth_once_when_no_camera_rays_are_to_come) {
+    Waves waves(10, 2);
+    waves.push(1, 2);
     waves.push(2, 3);
-    EXPECT_EQ(waves.next()->depth, 2);
-    EXPECT_EQ(waves.next()->count, 5u);
-    EXPECT_FALSE(waves.next());
+    EXPECT_EQ(waves.next(0)->depth, 1);
+    waves.push(2, 1);
+    const auto last = waves.next(0);
+    EXPECT_EQ(last->depth, 2);
+    EXPECT_EQ(last->count, 4u);
+    EXPECT_FALSE(waves.next(0));
+}
+
+TEST(waves, begin_camera_batches_at_whole_chunks) {
+    Waves waves(1000, 1);
+    waves.push(1, 300);
+    EXPECT_EQ(waves.camera_batch(5000), 832u) << "13 chunks of at most 850 rays";
+    EXPECT_EQ(waves.camera_batch(831), 831u) << "the last ones";
+    EXPECT_EQ(Waves(50, 0).camera_batch(5000), 50u) << "less than a chunk";
 }
 
 TEST(waves, refuse_more_children_than_two_a_ray) {
     Waves waves(10, 1);
     EXPECT_THROW(waves.push(1, 21), QueueOverflow);
     EXPECT_THROW(waves.push(0, 11), QueueOverflow);
-    EXPECT_NO_THROW(waves.push(1, 20));
-}
-
-TEST(waves, refuse_to_cover_rays_that_wait) {
-    Waves waves(10, 1);
-    waves.push(1, 1);
-    EXPECT_THROW(waves.push(1, 1), QueueOverflow);
+    EXPECT_NO_THROW(waves.push(1, 15));
+    EXPECT_THROW(waves.push(1, 6), QueueOverflow);
 }
 
 }  // namespace

@@ -174,7 +174,7 @@ SecondaryResult KernelRig::secondary(std::span<const Ray> rays, std::span<const 
     const Buffer<Ray> children = guarded<Ray>(capacity);
     Buffer<Ray> within = children.first(capacity);
     Film film = film_for(rays);
-    stages().secondary(parts_->scene, {queue, first, static_cast<uint>(hits.size())}, hit_queue, within, film);
+    stages().secondary(parts_->scene, {queue, first, static_cast<uint>(hits.size())}, hit_queue, {within}, film);
     return {children.read(device()), read(film)};
 }
 

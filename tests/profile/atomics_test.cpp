@@ -74,7 +74,7 @@ class FilmReader {
         if (stage == "shadow")
             atomics +=
                 (now.shadow_traced != counters_.shadow_traced) + (now.shadow_blocked != counters_.shadow_blocked);
-        if (stage == "secondary") atomics = view.children_count > 0;
+        if (stage == "secondary") atomics = view.children->count > 0;
         look(film);
         counters_ = now;
         seen.push_back({stage, view.batch.depth, atomics});

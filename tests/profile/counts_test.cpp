@@ -69,7 +69,7 @@ class QueueReader {
     void count_children(const WaveView& view) {
         std::set<std::pair<uint, uint>>
             paths;  // a child's is a hash of its parent's and its branch; samples share them
-        for (const Ray& child : view.children->read(s_.device, 0, view.children_count))
+        for (const Ray& child : view.children->items.read(s_.device, view.children->first, view.children->count))
             paths.emplace(child.path, child.sample);
         Fates& fates = waves.back().fates;
         for (std::size_t i = 0; i < rays_.size(); ++i) {
@@ -211,7 +211,7 @@ TEST(FalsifiedCounts, of_popped_rays_are_noticed) {
     Waves waves(8, 1);
     waves.push(0, 5);
     EXPECT_THROW(waves.check_drained(), QueueMismatch);
-    waves.next();
+    waves.next(0);
     EXPECT_NO_THROW(waves.check_drained());
     EXPECT_EQ(waves.counts(0).high_water, 5u);
 }

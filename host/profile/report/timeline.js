@@ -87,9 +87,9 @@ function timelineFigure() {
         (batch ? '<h3>One batch of camera rays and all that came of it</h3>' + lanes('One batch', batch) : '');
     return figure(
         'timeline', title,
-        `One frame with ${settingName(setting)}. The deepest queue that is not empty always goes first, ` +
-            'so each batch of camera rays goes down to ' +
-            `the last reflection before the next one starts. Gaps are time in which the device ran nothing.${
+        `One frame with ${settingName(setting)}. The deepest queue that holds half a batch goes first; fewer rays ` +
+            'wait for more of their depth, and once all camera rays are generated ' +
+            `each depth is emptied in turn. Gaps are time in which the device ran nothing.${
                 left ? ` The last ${grouped(left)} launches are in trace.json only.` : ''}`,
         plot,
         table(
