@@ -29,8 +29,8 @@ typedef struct {
     bool is_pinhole;  // all rays start at one point: beams tell as much as rays
 } Packet;
 
-// Halves of vectors are taken through pointers: Oclgrind 21.10 reads beyond its record of what was written for v.hi and
-// (float16)(v, v).
+// Halves of vectors are taken through pointers and lanes are named one by one: Oclgrind 21.10 reads beyond its record of
+// what was written for v.hi, v.s1032547698badcfe and (float16)(v, v).
 
 /// The smallest and the largest lane.
 static inline float min_lane(float16 v) {
@@ -64,12 +64,14 @@ static inline float16 last_halves(float16 a, float16 b) {
 /// The smallest lane of each of four vectors, in four lanes each: half of two vectors at a time.
 static inline float16 min_lanes(float16 a, float16 b, float16 c, float16 d) {
     const float16 ab = min16(first_halves(a, b), last_halves(a, b)), cd = min16(first_halves(c, d), last_halves(c, d));
-    const float16 quarters = min16((float16)(ab.s0, ab.s1, ab.s2, ab.s3, ab.s8, ab.s9, ab.sa, ab.sb, cd.s0, cd.s1,
-                                             cd.s2, cd.s3, cd.s8, cd.s9, cd.sa, cd.sb),
-                                   (float16)(ab.s4, ab.s5, ab.s6, ab.s7, ab.sc, ab.sd, ab.se, ab.sf, cd.s4, cd.s5,
-                                             cd.s6, cd.s7, cd.sc, cd.sd, cd.se, cd.sf));
-    const float16 eighths = min16(quarters, quarters.s23016745ab89efcd);
-    return min16(eighths, eighths.s1032547698badcfe);
+    const float16 q = min16((float16)(ab.s0, ab.s1, ab.s2, ab.s3, ab.s8, ab.s9, ab.sa, ab.sb, cd.s0, cd.s1, cd.s2,
+                                      cd.s3, cd.s8, cd.s9, cd.sa, cd.sb),
+                            (float16)(ab.s4, ab.s5, ab.s6, ab.s7, ab.sc, ab.sd, ab.se, ab.sf, cd.s4, cd.s5, cd.s6,
+                                      cd.s7, cd.sc, cd.sd, cd.se, cd.sf));
+    const float16 e = min16(q, (float16)(q.s2, q.s3, q.s0, q.s1, q.s6, q.s7, q.s4, q.s5, q.sa, q.sb, q.s8, q.s9, q.se,
+                                         q.sf, q.sc, q.sd));
+    return min16(e, (float16)(e.s1, e.s0, e.s3, e.s2, e.s5, e.s4, e.s7, e.s6, e.s9, e.s8, e.sb, e.sa, e.sd, e.sc, e.sf,
+                              e.se));
 }
 
 /// The smallest and the largest lane of each group, in four lanes each.
@@ -82,8 +84,10 @@ static inline float16 max_of_groups(const float16* v) {
 
 /// Spreads such lanes to the eight that a group has in a vector of pairs.
 static inline void set_pairs(float16* pairs, float16 v) {
-    pairs[0] = v.s0000000044444444;
-    pairs[1] = v.s88888888cccccccc;
+    pairs[0] = (float16)(v.s0, v.s0, v.s0, v.s0, v.s0, v.s0, v.s0, v.s0, v.s4, v.s4, v.s4, v.s4, v.s4, v.s4, v.s4,
+                         v.s4);
+    pairs[1] = (float16)(v.s8, v.s8, v.s8, v.s8, v.s8, v.s8, v.s8, v.s8, v.sc, v.sc, v.sc, v.sc, v.sc, v.sc, v.sc,
+                         v.sc);
 }
 
 static inline void update_farthest(Packet* p) {

@@ -8,7 +8,8 @@
 static inline Lanes3 environment_texels(Texture image, global const float* texels, int16 x, int16 y) {
     const int width = (int)image.width;
     const int16 column = select(select(x, x - width, x >= width), x + width, x < 0);
-    const int16 row = clamp(y, 0, (int)image.height - 1);
+    // Vectors, since Oclgrind 21.10 reads fifteen more lanes of a scalar bound.
+    const int16 row = clamp(y, (int16)(0), (int16)((int)image.height - 1));
     const uint16 index = as_uint16(row * width + column);
     global const float* first = texels + 3ul * image.first;
     const Lanes3 r = {gather1(first, 3, index), gather1(first + 1, 3, index), gather1(first + 2, 3, index)};
