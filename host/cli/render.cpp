@@ -166,7 +166,8 @@ int render(RenderArguments arguments) {
     Frame frame =
         clock.timeline.measure(std::string(profile::render_span), [&] { return render_frame(arguments, renderer); });
     if (!arguments.quiet) warn_of_film(frame);
-    captures.write(scene, renderer, frame, arguments.quiet);
+    if (!arguments.captures.empty())
+        clock.timeline.measure("write captures", [&] { captures.write(scene, renderer, frame, arguments.quiet); });
     clock.timeline.measure("write picture", [&] { write_picture(arguments, scene, frame, aovs); });
     if (detail_of(arguments) != profile::Detail::none)
         report(arguments, clock.read(scene, device, options, renderer, frame));

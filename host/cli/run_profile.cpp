@@ -24,7 +24,7 @@ profile::KernelCache kernel_cache(std::filesystem::file_time_type since) {
 }  // namespace
 
 profile::RunProfile RunClock::read(const Scene& scene, const Device& device, const RenderOptions& options,
-                                   const Renderer& renderer, Frame& frame) const {
+                                   const Renderer& renderer, Frame& frame) {
     const PixelWindow window = crop_window(scene.settings);
     profile::RunProfile run;
     run.scene = scene.file;
@@ -37,7 +37,7 @@ profile::RunProfile RunClock::read(const Scene& scene, const Device& device, con
     run.work_group = options.work_group;
     run.primitives = scene.primitive_count();
     run.device_bytes = renderer.memory().total();
-    run.film_hash = frame.hash();
+    run.film_hash = timeline.measure("hash film", [&] { return frame.hash(); });
     run.spans = timeline.spans();
     run.spans.insert(run.spans.end(), renderer.setup().begin(), renderer.setup().end());
     std::ranges::sort(run.spans, {}, &profile::Span::start);

@@ -17,7 +17,7 @@ class RunClock {
 
     /// Everything about the run until now. Takes over the frame's profile.
     profile::RunProfile read(const Scene& scene, const Device& device, const RenderOptions& options,
-                             const Renderer& renderer, Frame& frame) const;
+                             const Renderer& renderer, Frame& frame);
 
   private:
     std::int64_t start_ = profile::now();

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <functional>
+#include <numeric>
 
 #include "common/child_process.hpp"
 #include "device/kernel_cache.hpp"
@@ -49,11 +51,17 @@ std::span<const cl_long> Frame::plane(int plane) const {
 }
 
 std::uint64_t Frame::hash() const {
-    std::uint64_t h = 0xcbf29ce484222325u;
-    for (const cl_long sum : sums)
-        for (int byte = 0; byte < 8; ++byte)
-            h = (h ^ (static_cast<std::uint64_t>(sum) >> (8 * byte) & 0xff)) * 0x100000001b3u;
-    return h;
+    // A multiplication has to wait for the one before: each channel has a chain of its own.
+    std::array<std::uint64_t, FILM_CHANNELS> chains;
+    chains.fill(0xcbf29ce484222325u);
+    const auto add = [](std::uint64_t h, std::uint64_t word) {
+        h = (h ^ word) * 0x100000001b3u;
+        return h ^ h >> 32;  // else high bits would never come down
+    };
+    for (std::size_t i = 0; i < sums.size(); i += FILM_CHANNELS)
+        for (std::size_t channel = 0; channel < FILM_CHANNELS; ++channel)
+            chains[channel] = add(chains[channel], static_cast<std::uint64_t>(sums[i + channel]));
+    return std::accumulate(chains.begin(), chains.end(), std::uint64_t{0}, add);
 }
 
 Renderer::Renderer(const Device& device, const Scene& scene, const Bvh& bvh, const RenderOptions& options)
@@ -171,7 +179,7 @@ void Renderer::trace_all(const Progress& progress) {
             stages_.generate(device_scene_, counts_.camera, count, queues_[0]);
             counts_.camera += count;
             waves_.push(0, count);
-            batch = waves_.next(to_come);
+            batch = waves_.next(to_come - count);
             show("generate", *batch);
         }
         trace(*batch);

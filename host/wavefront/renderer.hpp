@@ -62,7 +62,7 @@ struct Frame {
 
     /// The integers of a plane that is kept.
     std::span<const cl_long> plane(int plane) const;
-    /// FNV-1a of the film's integers.
+    /// Of the film's integers: like FNV-1a, but a word of 64 bits a step, and the channels apart.
     std::uint64_t hash() const;
 };
 

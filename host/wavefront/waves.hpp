@@ -39,8 +39,8 @@ struct QueueCounts {
 
 /// Fill levels of the queues. Rays gather until they are half a batch, and the deepest queue that has so many goes
 /// first; so no deeper one has, and a batch's children (at most two a ray) fit behind those that wait in a queue of
-/// twice the capacity, if the batch leaves out a quarter at most. Once no camera rays are to come, the shallowest queue
-/// goes first: its children join those that wait, and each depth is emptied once.
+/// twice the capacity, if the batch leaves out a quarter at most. Once no camera rays are to come, the shallowest of the
+/// queues with less than half a batch goes next: its children join those that wait.
 class Waves {
   public:
     /// capacity: largest batch, at least 1. max_depth: of the deepest rays.

@@ -44,7 +44,7 @@ static inline void chunk_set_hit(RayChunk* c, uint i, Hit hit) {
     ((uint*)c->best_primitive)[i] = hit.primitive;
 }
 
-/// Adds ray j of another chunk, with what it has found so far.
+/// Puts ray j of another chunk in place i, with what it has found so far.
 static inline void chunk_copy(RayChunk* c, uint i, const RayChunk* from, uint j) {
     for (uint axis = 0; axis < 3; ++axis) {
         set_lane(c->origin[axis], i, get_lane(from->origin[axis], j));

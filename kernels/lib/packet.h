@@ -12,10 +12,9 @@
 
 // Directions that differ by more than this on an axis share too few nodes to be worth it.
 #define COHERENT_SPREAD 0.7f
-#define FEWEST_TOGETHER 20  // rays of a packet
+#define FEWEST_TOGETHER 20   // rays of a packet
 #define FEWEST_AT_A_CHILD 6  // rays that meet a child; fewer fly on alone below it
-#define MOST_HANDED_OVER 2   // times a ray is so on average; then all go their own ways
-
+#define MOST_HANDED_OVER 2   // times that each ray does so on average, before the packet gives up
 
 /// A block of triangles as all rays of a packet see it: corners along the axes of its triangle frame, from the origin of a
 /// pinhole's rays, and per axis of the world the planes through which rays enter each triangle's bounds.
@@ -247,7 +246,7 @@ static inline bool visit_spheres_groups(Packet* p, global const SphereBlock* blo
 static inline ulong all_rays(const RayChunk* c) { return c->count < CHUNK ? (1ul << c->count) - 1ul : ~0ul; }
 
 /// Finds the closest hit of every ray of a coherent packet among the primitives of the hierarchy, or with any_hit whether
-/// there is one.
+/// there is one. What few rays meet they visit alone.
 static void traverse_packet(const Geometry* geometry, Packet* p, bool any_hit) {
     if (geometry->node_count == 0) return;
     ulong stack[STACK_SIZE], stack_rays[STACK_SIZE];

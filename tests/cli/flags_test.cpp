@@ -188,9 +188,9 @@ TEST_F(Flags, of_statistics_files_write_both_beside_the_same_picture) {
     EXPECT_FALSE(json.at("launches").at("rows").empty());
     std::vector<std::string> spans;
     for (const auto& span : json.at("times").at("spans")) spans.push_back(span.at("name"));
-    const std::vector<std::string> expected = {"load scene",      "open device",  "build hierarchy",
-                                               "build kernels",   "upload scene", "allocate queues",
-                                               "compile kernels", "render",       "write picture"};
+    const std::vector<std::string> expected = {"load scene",    "open device",     "build hierarchy", "build kernels",
+                                               "upload scene",  "allocate queues", "compile kernels", "render",
+                                               "write picture", "hash film"};
     EXPECT_EQ(spans, expected);
     EXPECT_FALSE(nlohmann::json::parse(read_bytes(trace)).at("traceEvents").empty());
 }

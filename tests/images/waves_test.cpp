@@ -88,7 +88,7 @@ TEST(waves, let_fewer_rays_wait_for_more) {
     EXPECT_EQ(waves.next(92)->first, 10u);
 }
 
-TEST(waves, empty_each_depth_once_when_no_camera_rays_are_to_come) {
+TEST(waves, empty_the_shallowest_first_when_no_camera_rays_are_to_come) {
     Waves waves(10, 2);
     waves.push(1, 2);
     waves.push(2, 3);
