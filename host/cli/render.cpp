@@ -147,7 +147,7 @@ int render(RenderArguments arguments) {
     const std::vector<std::string> aovs = parse_aovs(arguments.aovs);
     RenderOptions options = arguments.device.options();
     options.planes = aov_planes(aovs);
-    options.keep_sums = !aovs.empty() || detail_of(arguments) != profile::Detail::none;
+    options.keep_sums = !aovs.empty();
     if (image_format(arguments.output) == ImageFormat::png && (arguments.half || !aovs.empty()))
         throw UsageError(fmt::format("{}: a PNG has 8 bits a channel and no layers; give an output that ends in .exr",
                                      arguments.half ? "--half" : "--aov"));

@@ -37,7 +37,7 @@ profile::RunProfile RunClock::read(const Scene& scene, const Device& device, con
     run.work_group = options.work_group;
     run.primitives = scene.primitive_count();
     run.device_bytes = renderer.memory().total();
-    run.film_hash = timeline.measure("hash film", [&] { return frame.hash(); });
+    run.film_hash = timeline.measure("hash film", [&] { return renderer.hash_film(); });
     run.spans = timeline.spans();
     run.spans.insert(run.spans.end(), renderer.setup().begin(), renderer.setup().end());
     std::ranges::sort(run.spans, {}, &profile::Span::start);

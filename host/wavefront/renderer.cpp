@@ -50,7 +50,9 @@ std::span<const cl_long> Frame::plane(int plane) const {
     return std::span(sums).subspan(planes.index(plane) * size, size);
 }
 
-std::uint64_t Frame::hash() const {
+namespace {
+
+std::uint64_t hash_of(std::span<const cl_long> sums) {
     // A multiplication has to wait for the one before: each channel has a chain of its own.
     std::array<std::uint64_t, FILM_CHANNELS> chains;
     chains.fill(0xcbf29ce484222325u);
@@ -62,6 +64,24 @@ std::uint64_t Frame::hash() const {
         for (std::size_t channel = 0; channel < FILM_CHANNELS; ++channel)
             chains[channel] = add(chains[channel], static_cast<std::uint64_t>(sums[i + channel]));
     return std::accumulate(chains.begin(), chains.end(), std::uint64_t{0}, add);
+}
+
+}  // namespace
+
+std::uint64_t Frame::hash() const {
+    return hash_of(sums);
+}
+
+std::uint64_t Renderer::hash_film() const try {
+    const std::size_t count = film_.sums.size(), bytes = count * sizeof(cl_long);
+    const auto* sums = static_cast<const cl_long*>(
+        device_.queue.enqueueMapBuffer(film_.sums.memory(), CL_TRUE, CL_MAP_READ, 0, bytes));
+    const std::uint64_t hash = hash_of({sums, count});
+    device_.queue.enqueueUnmapMemObject(film_.sums.memory(), const_cast<cl_long*>(sums));
+    device_.queue.finish();
+    return hash;
+} catch (const cl::Error& error) {
+    throw DeviceError(error);
 }
 
 Renderer::Renderer(const Device& device, const Scene& scene, const Bvh& bvh, const RenderOptions& options)

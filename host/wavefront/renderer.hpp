@@ -97,6 +97,9 @@ class Renderer {
     const DeviceScene& device_scene() const { return device_scene_; }
     Stages& stages() { return stages_; }
 
+    /// Frame::hash() of the last frame, without a copy of its integers.
+    std::uint64_t hash_film() const;
+
     /// What the constructor did: building the kernels, uploading the scene, allocating the queues, compiling.
     const std::vector<profile::Span>& setup() const { return timeline_.spans(); }
 
