@@ -156,13 +156,14 @@ static inline float width_at(const Packet* p, float z) {
 /// Where along z the first and the last ray come closest; not finite if they are parallel.
 static inline float crossing(const Packet* p) {
     const RayChunk* c = &p->rays;
-    const uint z = p->axis[2], last = c->count - 1;
-    const float slope_x = get_lane(c->shear[0], last) - get_lane(c->shear[0], 0);
-    const float slope_y = get_lane(c->shear[1], last) - get_lane(c->shear[1], 0);
+    const uint z = p->axis[2], first = lowest_bit64(c->rays), last = 63u - (uint)clz(c->rays);
+    const float slope_x = get_lane(c->shear[0], last) - get_lane(c->shear[0], first);
+    const float slope_y = get_lane(c->shear[1], last) - get_lane(c->shear[1], first);
     const uint a = fabs(slope_x) > fabs(slope_y) ? 0 : 1;
-    const float apart_z = get_lane(c->origin[z], last) - get_lane(c->origin[z], 0);
-    const float apart = get_lane(c->origin[p->axis[a]], last) - get_lane(c->origin[p->axis[a]], 0);
-    return get_lane(c->origin[z], 0) + (get_lane(c->shear[a], last) * apart_z - apart) / (a == 0 ? slope_x : slope_y);
+    const float origin_z = get_lane(c->origin[z], first);
+    const float apart_z = get_lane(c->origin[z], last) - origin_z;
+    const float apart = get_lane(c->origin[p->axis[a]], last) - get_lane(c->origin[p->axis[a]], first);
+    return origin_z + (get_lane(c->shear[a], last) * apart_z - apart) / (a == 0 ? slope_x : slope_y);
 }
 
 /// Finds the waist: where the packet is narrowest of where its rays start, end, or seem to come from or go to beyond

@@ -13,8 +13,8 @@
 #define OCTANT_AXIS 3u
 #define OCTANT_SIGN 2u
 
-/// Up to CHUNK rays: ray i is lane i % GROUP of vector i / GROUP. Places without a ray repeat ray 0, with best_t = -1,
-/// which no distance is below: what is tested finds nothing for them.
+/// Up to CHUNK rays: ray i is lane i % GROUP of vector i / GROUP. Places without a ray repeat one, with best_t = -1, which no
+/// distance is below: what is tested finds nothing for them.
 typedef struct {
     float16 origin[3][GROUPS], direction[3][GROUPS];
     float16 inverse[3][GROUPS], near[3][GROUPS], far[3][GROUPS];  // SlabFrame
@@ -23,6 +23,7 @@ typedef struct {
     uint16 best_primitive[GROUPS];
     uint16 octant[GROUPS];
     uint count;
+    ulong rays;  // one bit each
 } RayChunk;
 
 static inline float get_lane(const float16* vectors, uint i) { return ((const float*)vectors)[i]; }
@@ -42,15 +43,6 @@ static inline void chunk_set_hit(RayChunk* c, uint i, Hit hit) {
     set_lane(c->best_u, i, hit.u);
     set_lane(c->best_v, i, hit.v);
     ((uint*)c->best_primitive)[i] = hit.primitive;
-}
-
-/// Puts ray j of another chunk in place i, with what it has found so far.
-static inline void chunk_copy(RayChunk* c, uint i, const RayChunk* from, uint j) {
-    for (uint axis = 0; axis < 3; ++axis) {
-        set_lane(c->origin[axis], i, get_lane(from->origin[axis], j));
-        set_lane(c->direction[axis], i, get_lane(from->direction[axis], j));
-    }
-    chunk_set_hit(c, i, chunk_hit(from, j));
 }
 
 /// slab_frame() of a group on one axis.
@@ -92,18 +84,69 @@ static inline void chunk_frames(RayChunk* c) {
     }
 }
 
-/// Repeats ray 0 in the places without a ray, and makes the frames. count > 0.
-static inline void chunk_prepare(RayChunk* c, uint count) {
-    c->count = count;
-    for (uint i = count; i < CHUNK; ++i) {
+/// The lanes of a group whose rays have a bit set.
+static inline int16 lanes_of_rays(ulong rays, uint group) {
+    const uint16 bit = (uint16)(0x1, 0x2, 0x4, 0x8, 0x10, 0x20, 0x40, 0x80, 0x100, 0x200, 0x400, 0x800, 0x1000, 0x2000,
+                                0x4000, 0x8000);
+    return ((uint16)((uint)(rays >> GROUP * group)) & bit) != 0u;
+}
+
+/// The rays of one octant, one bit each; and those whose directions have the same signs, whichever axis is their largest.
+static inline ulong rays_of_octant(const RayChunk* c, uint octant) {
+    ulong rays = 0;
+#pragma unroll
+    for (uint group = 0; group < GROUPS; ++group)
+        rays |= (ulong)lane_mask16(c->octant[group] == octant) << (GROUP * group);
+    return rays & c->rays;
+}
+static inline ulong rays_of_signs(const RayChunk* c, uint octant) {
+    ulong rays = 0;
+#pragma unroll
+    for (uint group = 0; group < GROUPS; ++group)
+        rays |= (ulong)lane_mask16((c->octant[group] ^ octant) >> OCTANT_SIGN == 0u) << (GROUP * group);
+    return rays & c->rays;
+}
+
+/// The first ray in the lanes that are left out.
+static inline float16 repeat_first(const float16* vectors, uint group, uint first, int16 is_in) {
+    return select((float16)(get_lane(vectors, first)), vectors[group], is_in);
+}
+
+/// Those rays of a chunk that have a bit set, at least one and all of one octant, as a chunk: each stays in its place.
+static inline void chunk_part(RayChunk* part, const RayChunk* c, ulong rays) {
+    const uint first = lowest_bit64(rays);
+    part->count = popcount(rays);
+    part->rays = rays;
+#pragma unroll
+    for (uint group = 0; group < GROUPS; ++group) {
+        const int16 is_in = lanes_of_rays(rays, group);
 #pragma unroll
         for (uint axis = 0; axis < 3; ++axis) {
-            set_lane(c->origin[axis], i, get_lane(c->origin[axis], 0));
-            set_lane(c->direction[axis], i, get_lane(c->direction[axis], 0));
+            part->origin[axis][group] = repeat_first(c->origin[axis], group, first, is_in);
+            part->direction[axis][group] = repeat_first(c->direction[axis], group, first, is_in);
+            part->inverse[axis][group] = repeat_first(c->inverse[axis], group, first, is_in);
+            part->near[axis][group] = repeat_first(c->near[axis], group, first, is_in);
+            part->far[axis][group] = repeat_first(c->far[axis], group, first, is_in);
+            part->shear[axis][group] = repeat_first(c->shear[axis], group, first, is_in);
         }
-        chunk_set_hit(c, i, no_hit(-1.0f));
+        part->best_t[group] = select((float16)(-1.0f), c->best_t[group], is_in);
+        part->best_u[group] = c->best_u[group];
+        part->best_v[group] = c->best_v[group];
+        part->best_primitive[group] = c->best_primitive[group];
+        part->octant[group] = (uint16)(get_octant(c, first));
     }
-    chunk_frames(c);
+}
+
+/// Takes over what a part has found.
+static inline void chunk_merge(RayChunk* c, const RayChunk* part) {
+#pragma unroll
+    for (uint group = 0; group < GROUPS; ++group) {
+        const int16 is_in = lanes_of_rays(part->rays, group);
+        c->best_t[group] = select(c->best_t[group], part->best_t[group], is_in);
+        c->best_u[group] = select(c->best_u[group], part->best_u[group], is_in);
+        c->best_v[group] = select(c->best_v[group], part->best_v[group], is_in);
+        c->best_primitive[group] = select(c->best_primitive[group], part->best_primitive[group], is_in);
+    }
 }
 
 /// Loads `count` rays of a queue, count > 0, and makes their frames. A record, `stride` words long, begins with the
@@ -112,6 +155,7 @@ static inline void chunk_load(RayChunk* c, global const void* records, uint stri
     const uint16 lane = (uint16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
     global const float* words = records;
     c->count = count;
+    c->rays = ~0ul >> (CHUNK - count);
 #pragma unroll
     for (uint group = 0; group < GROUPS; ++group) {
         const uint16 place = lane + GROUP * group;
@@ -176,28 +220,43 @@ static inline void chunk_visit_planes(RayChunk* c, const Geometry* geometry) {
     }
 }
 
-/// Ray i alone: its query, from its best hit so far, and its frames.
-static inline void chunk_take_ray(const RayChunk* c, uint i, Query* query, SlabFrame* slabs, TriangleFrame* frame) {
-    const uint octant = get_octant(c, i);
-    query->after.t = 0.0f;
-    query->after.primitive = NO_INDEX;
-    query->best = chunk_hit(c, i);
-    query->origin = (float3)(get_lane(c->origin[0], i), get_lane(c->origin[1], i), get_lane(c->origin[2], i));
-    query->direction =
-        (float3)(get_lane(c->direction[0], i), get_lane(c->direction[1], i), get_lane(c->direction[2], i));
-    slabs->inverse = (float3)(get_lane(c->inverse[0], i), get_lane(c->inverse[1], i), get_lane(c->inverse[2], i));
-    slabs->near = (float3)(get_lane(c->near[0], i), get_lane(c->near[1], i), get_lane(c->near[2], i));
-    slabs->far = (float3)(get_lane(c->far[0], i), get_lane(c->far[1], i), get_lane(c->far[2], i));
+/// What ray i looks for: something nearer than its best hit so far.
+static inline Query chunk_query(const RayChunk* c, uint i) {
+    Query query;
+    query.origin = (float3)(get_lane(c->origin[0], i), get_lane(c->origin[1], i), get_lane(c->origin[2], i));
+    query.direction = (float3)(get_lane(c->direction[0], i), get_lane(c->direction[1], i), get_lane(c->direction[2], i));
+    query.after = no_hit(0.0f);
+    query.best = chunk_hit(c, i);
+    return query;
+}
+
+/// slab_frame() of ray i.
+static inline SlabFrame chunk_slabs(const RayChunk* c, uint i) {
+    SlabFrame f;
+    f.inverse = (float3)(get_lane(c->inverse[0], i), get_lane(c->inverse[1], i), get_lane(c->inverse[2], i));
+    f.near = (float3)(get_lane(c->near[0], i), get_lane(c->near[1], i), get_lane(c->near[2], i));
+    f.far = (float3)(get_lane(c->far[0], i), get_lane(c->far[1], i), get_lane(c->far[2], i));
 #pragma unroll
-    for (uint axis = 0; axis < 3; ++axis) slabs->sign[axis] = octant >> (OCTANT_SIGN + axis) & 1u;
+    for (uint axis = 0; axis < 3; ++axis) f.sign[axis] = get_octant(c, i) >> (OCTANT_SIGN + axis) & 1u;
+    return f;
+}
+
+/// The axes of the triangle frames of an octant.
+static inline TriangleFrame octant_axes(uint octant) {
     const uint largest = octant & OCTANT_AXIS;
-    *frame = frame_axes(largest, (octant >> (OCTANT_SIGN + largest) & 1u) != 0);
-    frame->origin_x = get_lane(c->origin[frame->x], i);
-    frame->origin_y = get_lane(c->origin[frame->y], i);
-    frame->origin_z = get_lane(c->origin[frame->z], i);
-    frame->shear_x = get_lane(c->shear[0], i);
-    frame->shear_y = get_lane(c->shear[1], i);
-    frame->shear_z = get_lane(c->shear[2], i);
+    return frame_axes(largest, (octant >> (OCTANT_SIGN + largest) & 1u) != 0);
+}
+
+/// triangle_frame() of ray i, whose axes these are.
+static inline TriangleFrame chunk_triangle_frame(const RayChunk* c, uint i, TriangleFrame axes) {
+    TriangleFrame f = axes;
+    f.origin_x = get_lane(c->origin[f.x], i);
+    f.origin_y = get_lane(c->origin[f.y], i);
+    f.origin_z = get_lane(c->origin[f.z], i);
+    f.shear_x = get_lane(c->shear[0], i);
+    f.shear_y = get_lane(c->shear[1], i);
+    f.shear_z = get_lane(c->shear[2], i);
+    return f;
 }
 
 #endif

@@ -1,5 +1,5 @@
-// Rays of a chunk that go their own ways, several in flight: while the memory that one asks for is on its way, the others
-// take their steps. What a ray finds is what traverse() finds for it.
+// Rays of a chunk that go their own ways to their closest hits, several in flight: while the memory that one asks for is on
+// its way, the others take their steps. What a ray finds is what traverse() finds for it.
 // The processor runs ahead of what it waits for, as far as it can foresee branches; so a step has few that depend on data.
 #ifndef RAYMILL_FLIGHT_H
 #define RAYMILL_FLIGHT_H
@@ -54,25 +54,18 @@ static inline uint push_few(const Geometry* geometry, global const uint* childre
     return top + count;
 }
 
-static inline void take_off(Flight* f, const RayChunk* c, uint ray, uint child) {
-    chunk_take_ray(c, ray, &f->query, &f->slabs, &f->frame);
+static inline void take_off(Flight* f, const RayChunk* c, uint ray) {
+    f->query = chunk_query(c, ray);
+    f->slabs = chunk_slabs(c, ray);
+    f->frame = chunk_triangle_frame(c, ray, octant_axes(get_octant(c, ray)));
     f->ray = ray;
-    f->child = child;
+    f->child = ROOT;
     f->top = 0;
 }
 
-/// Brings home what a ray has found. Whether it is something new.
-static inline bool land(const Flight* f, RayChunk* c, bool any_hit) {
-    Hit hit = f->query.best;
-    if (hit.primitive == ((const uint*)c->best_primitive)[f->ray]) return false;
-    if (any_hit) hit.t = -1.0f;  // the ray is done
-    chunk_set_hit(c, f->ray, hit);
-    return true;
-}
-
-/// Visits one node or leaf, and asks for the next. False if there is none, or with any_hit if something is hit.
-static inline bool fly_on(Flight* f, const Geometry* geometry, const ChildMemory* memory, bool any_hit) {
-    const uint child = f->child, none = f->query.best.primitive;
+/// Visits one node or leaf, and asks for the next. False if there is none.
+static inline bool fly_on(Flight* f, const Geometry* geometry, const ChildMemory* memory) {
+    const uint child = f->child;
     uint top = f->top;
     if (!(child & CHILD_LEAF)) {
         global const BvhNode* node = geometry->nodes + child;
@@ -81,7 +74,6 @@ static inline bool fly_on(Flight* f, const Geometry* geometry, const ChildMemory
         top = push_few(geometry, node->child, mask, entry, f->stack, top);
     } else {
         visit_leaf(geometry, child, &f->slabs, &f->frame, &f->query);
-        if (any_hit && f->query.best.primitive != none) return false;
     }
     ulong item;
     do {
@@ -94,34 +86,30 @@ static inline bool fly_on(Flight* f, const Geometry* geometry, const ChildMemory
     return true;
 }
 
-/// Goes on with those rays of a chunk that have a bit set, below a child, from their best hits so far. Whether one of them
-/// hits something new.
-static bool fly_rays(const Geometry* scene, RayChunk* c, ulong rays, uint child, bool any_hit) {
-    if (scene->node_count == 0) return false;
+/// Finds the closest hits of those rays of a chunk that have a bit set, from their best hits so far.
+static void fly_rays(const Geometry* scene, RayChunk* c, ulong rays) {
     const Geometry geometry = *scene;  // a copy that no store can change, for the compiler to keep in registers
     const ChildMemory memory = child_memory(scene);
     Flight flights[FLIGHT];
     uchar active[FLIGHT];  // in the first places, flights that are not over
     uint count = 0;
-    bool found = false;
     for (; rays != 0 && count < FLIGHT; rays &= rays - 1) {
         active[count] = count;
-        take_off(flights + count++, c, lowest_bit64(rays), child);
+        take_off(flights + count++, c, lowest_bit64(rays));
     }
     while (count > 0) {
         for (uint i = 0; i < count; ++i) {
             Flight* f = flights + active[i];
-            if (fly_on(f, &geometry, &memory, any_hit)) continue;
-            found |= land(f, c, any_hit);
+            if (fly_on(f, &geometry, &memory)) continue;
+            chunk_set_hit(c, f->ray, f->query.best);
             if (rays != 0) {
-                take_off(f, c, lowest_bit64(rays), child);
+                take_off(f, c, lowest_bit64(rays));
                 rays &= rays - 1;
             } else {
                 active[i--] = active[--count];
             }
         }
     }
-    return found;
 }
 
 #endif

@@ -6,15 +6,13 @@
 #define RAYMILL_PACKET_H
 
 #include "lib/beam.h"
-#include "lib/flight.h"
+#include "lib/stream.h"
 
 #define ENTRY_GROUPS_SHIFT 3u  // in a stack entry, above the lane
 
 // Directions that differ by more than this on an axis share too few nodes to be worth it.
 #define COHERENT_SPREAD 0.7f
-#define FEWEST_TOGETHER 20   // rays of a packet
-#define FEWEST_AT_A_CHILD 6  // rays that meet a child; fewer fly on alone below it
-#define MOST_HANDED_OVER 2   // times that each ray does so on average, before the packet gives up
+#define FEWEST_TOGETHER 20  // rays of a packet, and of those that meet a child: fewer go on as a stream
 
 /// A block of triangles as all rays of a packet see it: corners along the axes of its triangle frame, from the origin of a
 /// pinhole's rays, and per axis of the world the planes through which rays enter each triangle's bounds.
@@ -242,29 +240,23 @@ static inline bool visit_spheres_groups(Packet* p, global const SphereBlock* blo
     return found;
 }
 
-/// One bit a ray.
-static inline ulong all_rays(const RayChunk* c) { return c->count < CHUNK ? (1ul << c->count) - 1ul : ~0ul; }
-
 /// Finds the closest hit of every ray of a coherent packet among the primitives of the hierarchy, or with any_hit whether
-/// there is one. What few rays meet they visit alone.
+/// there is one. What few rays meet they visit as a stream.
 static void traverse_packet(const Geometry* geometry, Packet* p, bool any_hit) {
-    if (geometry->node_count == 0) return;
     ulong stack[STACK_SIZE], stack_rays[STACK_SIZE];
     stack_rays[0] = ~0ul;
     stack[0] = (ulong)(ALL_GROUPS << ENTRY_GROUPS_SHIFT) << 32;
-    uint top = 1, handed_over = 0;
+    uint top = 1;
+    Sharing sharing = {0, 0};
     while (top > 0) {
         const ulong item = stack[--top];
         const uint distance = (uint)(item >> 32), child = (uint)item;
         if (as_float(distance & ~(7u | ALL_GROUPS << ENTRY_GROUPS_SHIFT)) > p->farthest_of_all) continue;
-        if (popcount(stack_rays[top]) < FEWEST_AT_A_CHILD) {
-            handed_over += popcount(stack_rays[top]);
-            if (handed_over > MOST_HANDED_OVER * p->rays.count) {
-                fly_rays(geometry, &p->rays, all_rays(&p->rays), ROOT, any_hit);
-                return;
-            }
-            if (fly_rays(geometry, &p->rays, stack_rays[top], child, any_hit)) update_farthest(p);
-            continue;
+        if (popcount(stack_rays[top]) < FEWEST_TOGETHER) {
+            if (stream_below(geometry, &p->rays, stack_rays[top], child, true, any_hit, &sharing)) update_farthest(p);
+            if (any_hit || !share_little(&sharing)) continue;
+            fly_rays(geometry, &p->rays, p->rays.rays);
+            return;
         }
         const uint groups = distance >> ENTRY_GROUPS_SHIFT & ALL_GROUPS;
         if (!(child & CHILD_LEAF)) {
@@ -292,15 +284,6 @@ static void traverse_packet(const Geometry* geometry, Packet* p, bool any_hit) {
     }
 }
 
-/// The rays of one octant, one bit each.
-static inline ulong rays_of_octant(const RayChunk* c, uint octant) {
-    ulong members = 0;
-#pragma unroll
-    for (uint group = 0; group < GROUPS; ++group)
-        members |= (ulong)lane_mask16(c->octant[group] == octant) << (GROUP * group);
-    return members;
-}
-
 /// Whether the rays, all of one octant, share so much of the hierarchy that they are better traced together.
 static inline bool are_close(const RayChunk* c) {
     for (uint axis = 0; axis < 3; ++axis) {
@@ -314,47 +297,35 @@ static inline bool are_close(const RayChunk* c) {
     return true;
 }
 
-/// Traces rays of one octant: together if they are close, else each on its own.
-static void traverse_octant(const Geometry* geometry, Packet* p, bool any_hit) {
-    RayChunk* c = &p->rays;
-    if (c->count >= FEWEST_TOGETHER && are_close(c)) {
-        packet_prepare(p);
-        traverse_packet(geometry, p, any_hit);
-        return;
-    }
-    fly_rays(geometry, c, all_rays(c), ROOT, any_hit);
-}
-
-/// Finds the closest hit of every ray of a chunk, or with any_hit whether there is one.
+/// Finds the closest hit of every ray of a chunk, or with any_hit whether there is one: of close rays of one octant together,
+/// of all others as streams.
 static inline void traverse_chunk(const Geometry* geometry, Packet* p, bool any_hit) {
     RayChunk* c = &p->rays;
     chunk_visit_planes(c, geometry);
     if (any_hit)
         for (uint group = 0; group < GROUPS; ++group)
             c->best_t[group] = select(c->best_t[group], (float16)(-1.0f), c->best_primitive[group] != NO_INDEX);
-    ulong waiting = all_rays(c);
-    if ((waiting & ~rays_of_octant(c, c->octant[0].s0)) == 0) {
-        traverse_octant(geometry, p, any_hit);
-        return;
-    }
-    Packet part;
-    ulong alone = 0;
+    if (geometry->node_count == 0) return;
+    ulong waiting = c->rays, loose = 0;
     while (waiting != 0) {
         const ulong members = waiting & rays_of_octant(c, get_octant(c, lowest_bit64(waiting)));
         waiting &= ~members;
-        if (popcount(members) < FEWEST_TOGETHER) {
-            alone |= members;
+        if (members == c->rays && are_close(c)) {
+            packet_prepare(p);
+            traverse_packet(geometry, p, any_hit);
+            return;
+        }
+        Packet part;
+        if (popcount(members) >= FEWEST_TOGETHER) chunk_part(&part.rays, c, members);
+        if (popcount(members) < FEWEST_TOGETHER || !are_close(&part.rays)) {
+            loose |= members;
             continue;
         }
-        uint count = 0;
-        for (ulong rest = members; rest != 0; rest &= rest - 1) chunk_copy(&part.rays, count++, c, lowest_bit64(rest));
-        chunk_prepare(&part.rays, count);
-        traverse_octant(geometry, &part, any_hit);
-        count = 0;
-        for (ulong rest = members; rest != 0; rest &= rest - 1)
-            chunk_set_hit(c, lowest_bit64(rest), chunk_hit(&part.rays, count++));
+        packet_prepare(&part);
+        traverse_packet(geometry, &part, any_hit);
+        chunk_merge(c, &part.rays);
     }
-    fly_rays(geometry, c, alone, ROOT, any_hit);
+    if (loose != 0) stream_rays(geometry, c, loose, any_hit);
 }
 
 #endif

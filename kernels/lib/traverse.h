@@ -79,41 +79,37 @@ static inline bool accepts(const Query* query, float t, uint primitive) {
            is_later(query->best.t, query->best.primitive, t, primitive);
 }
 
-static inline void visit_triangles(global const TriangleBlock* block, const SlabFrame* slabs, TriangleFrame frame,
-                                   Query* query) {
-    float8 t8, u8, v8;
-    uint mask = intersect_triangles(block, slabs, frame, query->best.t, &t8, &u8, &v8);
-    if (mask == 0) return;
+/// Takes the best of a block's hits as the query's if it accepts it. mask: the lanes hit. Whether it did.
+static inline bool take_best(Query* query, global const uint* primitives, uint mask, float8 t8, float8 u8, float8 v8) {
     float t[BVH_WIDTH], u[BVH_WIDTH], v[BVH_WIDTH];
     vstore8(t8, 0, t);
     vstore8(u8, 0, u);
     vstore8(v8, 0, v);
+    bool taken = false;
     for (; mask != 0; mask &= mask - 1) {
         const uint lane = lowest_bit(mask);
-        const uint primitive = block->primitive[lane];
+        const uint primitive = primitives[lane];
         if (!accepts(query, t[lane], primitive)) continue;
         query->best.t = t[lane];
         query->best.u = u[lane];
         query->best.v = v[lane];
         query->best.primitive = primitive;
+        taken = true;
     }
+    return taken;
+}
+
+static inline void visit_triangles(global const TriangleBlock* block, const SlabFrame* slabs, TriangleFrame frame,
+                                   Query* query) {
+    float8 t, u, v;
+    const uint mask = intersect_triangles(block, slabs, frame, query->best.t, &t, &u, &v);
+    if (mask != 0) take_best(query, block->primitive, mask, t, u, v);
 }
 
 static inline void visit_spheres(global const SphereBlock* block, const SlabFrame* slabs, Query* query) {
-    float8 t8;
-    uint mask = intersect_spheres(block, slabs, query->origin, query->direction, query->after, query->best.t, &t8);
-    if (mask == 0) return;
-    float t[BVH_WIDTH];
-    vstore8(t8, 0, t);
-    for (; mask != 0; mask &= mask - 1) {
-        const uint lane = lowest_bit(mask);
-        const uint primitive = block->primitive[lane];
-        if (!accepts(query, t[lane], primitive)) continue;
-        query->best.t = t[lane];
-        query->best.u = 0.0f;
-        query->best.v = 0.0f;
-        query->best.primitive = primitive;
-    }
+    float8 t;
+    const uint mask = intersect_spheres(block, slabs, query->origin, query->direction, query->after, query->best.t, &t);
+    if (mask != 0) take_best(query, block->primitive, mask, t, (float8)(0.0f), (float8)(0.0f));
 }
 
 static inline void visit_leaf(const Geometry* geometry, uint child, const SlabFrame* slabs, const TriangleFrame* frame,

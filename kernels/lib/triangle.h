@@ -97,18 +97,19 @@ static inline float8 enter_triangles(global const TriangleBlock* block, const Sl
 
 /// Hits of the block's triangles: distance and barycentric weights of vertices 1 and 2 by lane. The mask says which lanes
 /// hit at a distance in (0, t_max] that is certainly positive.
-static inline uint intersect_triangles(global const TriangleBlock* block, const SlabFrame* slabs, TriangleFrame f,
+static inline __attribute__((always_inline)) uint intersect_triangles(global const TriangleBlock* block, const SlabFrame* slabs, TriangleFrame f,
                                        float t_max, float8* t, float8* u, float8* v) {
     global const float* p = &block->position[0][0][0];
-    const float8 az = aligned8(p + f.z * BVH_WIDTH) - f.origin_z;
-    const float8 bz = aligned8(p + (3 + f.z) * BVH_WIDTH) - f.origin_z;
-    const float8 cz = aligned8(p + (6 + f.z) * BVH_WIDTH) - f.origin_z;
-    const float8 ax = fma((float8)(-f.shear_x), az, aligned8(p + f.x * BVH_WIDTH) - f.origin_x);
-    const float8 ay = fma((float8)(-f.shear_y), az, aligned8(p + f.y * BVH_WIDTH) - f.origin_y);
-    const float8 bx = fma((float8)(-f.shear_x), bz, aligned8(p + (3 + f.x) * BVH_WIDTH) - f.origin_x);
-    const float8 by = fma((float8)(-f.shear_y), bz, aligned8(p + (3 + f.y) * BVH_WIDTH) - f.origin_y);
-    const float8 cx = fma((float8)(-f.shear_x), cz, aligned8(p + (6 + f.x) * BVH_WIDTH) - f.origin_x);
-    const float8 cy = fma((float8)(-f.shear_y), cz, aligned8(p + (6 + f.y) * BVH_WIDTH) - f.origin_y);
+    global const float *x = p + f.x * BVH_WIDTH, *y = p + f.y * BVH_WIDTH, *z = p + f.z * BVH_WIDTH;
+    const float8 az = aligned8(z) - f.origin_z;
+    const float8 bz = aligned8(z + 3 * BVH_WIDTH) - f.origin_z;
+    const float8 cz = aligned8(z + 6 * BVH_WIDTH) - f.origin_z;
+    const float8 ax = fma((float8)(-f.shear_x), az, aligned8(x) - f.origin_x);
+    const float8 ay = fma((float8)(-f.shear_y), az, aligned8(y) - f.origin_y);
+    const float8 bx = fma((float8)(-f.shear_x), bz, aligned8(x + 3 * BVH_WIDTH) - f.origin_x);
+    const float8 by = fma((float8)(-f.shear_y), bz, aligned8(y + 3 * BVH_WIDTH) - f.origin_y);
+    const float8 cx = fma((float8)(-f.shear_x), cz, aligned8(x + 6 * BVH_WIDTH) - f.origin_x);
+    const float8 cy = fma((float8)(-f.shear_y), cz, aligned8(y + 6 * BVH_WIDTH) - f.origin_y);
 
     // Twice the areas opposite each vertex: products rounded alike on both sides of an edge, so the signs agree there.
     const float8 ua = cx * by - cy * bx;
@@ -140,12 +141,12 @@ static inline uint intersect_triangles(global const TriangleBlock* block, const 
     }
 
     // A bound on the rounding error of the distance: a hit nearer than this may as well lie behind the origin.
-    const float8 x = max8(max8(fabs(ax), fabs(bx)), fabs(cx));
-    const float8 y = max8(max8(fabs(ay), fabs(by)), fabs(cy));
-    const float8 z = max8(max8(fabs(az), fabs(bz)), fabs(cz));
+    const float8 max_x = max8(max8(fabs(ax), fabs(bx)), fabs(cx));
+    const float8 max_y = max8(max8(fabs(ay), fabs(by)), fabs(cy));
+    const float8 max_z = max8(max8(fabs(az), fabs(bz)), fabs(cz));
     // No edge function is larger than their sum, because they have one sign.
-    const float8 delta_e = 2.0f * ROUNDING * fma(12.0f * x, y, 5.0f * z * (x + y));
-    const float8 delta = 3.0f * z * fabs(f.shear_z) * fma(delta_e, fabs(inverse), (float8)(6.0f * ROUNDING));
+    const float8 delta_e = 2.0f * ROUNDING * fma(12.0f * max_x, max_y, 5.0f * max_z * (max_x + max_y));
+    const float8 delta = 3.0f * max_z * fabs(f.shear_z) * fma(delta_e, fabs(inverse), (float8)(6.0f * ROUNDING));
     // No hit before its own bounds are entered: else a box might cull what comes out a rounding error nearer than the box.
     *t = max8(enter_triangles(block, slabs), distance);
     *u = va * inverse;

@@ -1,0 +1,215 @@
+// Rays of a chunk that visit the hierarchy together but are tested one by one, each against eight boxes or triangles: for
+// rays too few or too far apart to be a packet. The memory of a visit, the wait for it and the choice of what comes next
+// serve all rays that share it. What a ray finds is what traverse() finds for it.
+// Source: Barringer, Akenine-Moller, "Dynamic Ray Stream Traversal", ACM Transactions on Graphics 33(4), 2014.
+#ifndef RAYMILL_STREAM_H
+#define RAYMILL_STREAM_H
+
+#include "lib/flight.h"
+
+// Children whose memory is asked for before they are visited. One that comes late serves closest hits less, as nearer ones
+// should be known by then; of any hits, no order is better than another.
+#define AHEAD_FOR_CLOSEST 2
+#define AHEAD_FOR_ANY 8  // a power of two, and no less than the other
+
+// While one child is visited those ahead of it wait, and each may lead down to as many levels with seven that are left.
+#define STREAM_STACK (AHEAD_FOR_ANY * STACK_SIZE)
+
+#define FEWEST_VISITS 128  // before it is judged how many rays share one
+
+/// A child, and the rays that meet it, one bit each.
+typedef struct {
+    uint child;
+    ulong rays;
+} Visit;
+
+/// Rays whose directions have the same signs, on their way through the hierarchy.
+typedef struct {
+    uint sign[3];  // as in SlabFrame
+    uint top;      // of the stack
+    uint child[STREAM_STACK];
+    ulong rays[STREAM_STACK];
+} Stream;
+
+/// How many rays share a visit.
+typedef struct {
+    uint visits;
+    uint rays;
+} Sharing;
+
+/// Whether they are so few that each had better choose its own order: thin triangles, whose boxes overlap everywhere.
+static inline bool share_little(const Sharing* s) { return s->visits > FEWEST_VISITS && 4 * s->rays < 7 * s->visits; }
+
+/// Pushes the children that some ray meets; for closest hits so that the one that is met soonest is on top. Without branches
+/// for up to two, as push_few() in flight.h.
+static inline void stream_push(Stream* s, global const uint* children, const ulong* rays, uint mask, float8 soonest,
+                               bool any_hit) {
+    const uint top = s->top, count = popcount(mask);
+    s->top = top + count;
+    if (count > 2) {
+        uint place[BVH_WIDTH];
+        if (!any_hit) vstore8(places_by_distance(as_uint8(soonest), mask), 0, place);
+        for (uint i = 0; mask != 0; ++i, mask &= mask - 1) {
+            const uint lane = lowest_bit(mask), to = top + (any_hit ? i : place[lane]);
+            s->child[to] = children[lane];
+            s->rays[to] = rays[lane];
+        }
+        return;
+    }
+    uint key[BVH_WIDTH];
+    vstore8(as_uint8(soonest), 0, key);
+    const uint first = lowest_bit(mask | 0x80u), last = 31u - clz(mask | 1u);
+    const uint near = any_hit || key[first] < key[last] ? first : last, far = first ^ last ^ near;
+    s->child[top] = children[far];
+    s->rays[top] = rays[far];
+    s->child[top + 1] = children[near];
+    s->rays[top + 1] = rays[near];
+}
+
+/// intersect_children() for each ray of some, at least one, and what they meet pushed.
+static inline void stream_visit_node(Stream* s, const RayChunk* c, global const BvhNode* node, ulong rays, bool any_hit) {
+    const float8 near_x = planes_of(node, s->sign[0], 0), far_x = planes_of(node, 1 - s->sign[0], 0);
+    const float8 near_y = planes_of(node, s->sign[1], 1), far_y = planes_of(node, 1 - s->sign[1], 1);
+    const float8 near_z = planes_of(node, s->sign[2], 2), far_z = planes_of(node, 1 - s->sign[2], 2);
+    long8 meeting = (long8)(0);  // for each child, one bit a ray
+    float8 soonest = (float8)(INFINITY);
+    do {
+        const uint ray = lowest_bit64(rays);
+        const SlabFrame f = chunk_slabs(c, ray);
+        const float8 enter_x = fma(near_x, (float8)(f.inverse.x), (float8)(f.near.x));
+        const float8 enter_y = fma(near_y, (float8)(f.inverse.y), (float8)(f.near.y));
+        const float8 enter_z = fma(near_z, (float8)(f.inverse.z), (float8)(f.near.z));
+        const float8 leave_x = fma(far_x, (float8)(f.inverse.x), (float8)(f.far.x));
+        const float8 leave_y = fma(far_y, (float8)(f.inverse.y), (float8)(f.far.y));
+        const float8 leave_z = fma(far_z, (float8)(f.inverse.z), (float8)(f.far.z));
+        const float8 enter = max8(max8(enter_x, enter_y), max8(enter_z, (float8)(0.0f)));
+        const float8 leave = min8(min8(leave_x, leave_y), min8(leave_z, (float8)(get_lane(c->best_t, ray))));
+        const int8 meets = slabs_overlap(enter, leave);
+        meeting |= convert_long8(meets) & (long8)(rays & -rays);
+        if (!any_hit) soonest = select(soonest, min8(enter, soonest), meets);
+        rays &= rays - 1;
+    } while (rays != 0);
+    ulong of_child[BVH_WIDTH];
+    vstore8(as_ulong8(meeting), 0, of_child);
+    stream_push(s, node->child, of_child, lane_mask(convert_int8(meeting != 0)), soonest, any_hit);
+}
+
+/// Tests rays against a block of triangles; those that have found something new. one_frame: they share octant_axes().
+static inline ulong stream_visit_triangles(RayChunk* c, global const TriangleBlock* block, ulong rays, bool one_frame,
+                                           bool any_hit) {
+    const TriangleFrame axes = octant_axes(get_octant(c, lowest_bit64(rays)));
+    ulong found = 0;
+    for (; rays != 0; rays &= rays - 1) {
+        const uint ray = lowest_bit64(rays);
+        const TriangleFrame frame = chunk_triangle_frame(c, ray, one_frame ? axes : octant_axes(get_octant(c, ray)));
+        const SlabFrame slabs = chunk_slabs(c, ray);
+        float8 t, u, v;
+        const uint mask = intersect_triangles(block, &slabs, frame, get_lane(c->best_t, ray), &t, &u, &v);
+        if (mask == 0) continue;
+        Query query = chunk_query(c, ray);
+        if (!take_best(&query, block->primitive, mask, t, u, v)) continue;
+        if (any_hit) query.best.t = -1.0f;  // the ray is done
+        chunk_set_hit(c, ray, query.best);
+        found |= rays & -rays;
+    }
+    return found;
+}
+
+/// The same for a block of spheres.
+static __attribute__((noinline)) ulong stream_visit_spheres(RayChunk* c, global const SphereBlock* block, ulong rays,
+                                                            bool any_hit) {
+    ulong found = 0;
+    for (; rays != 0; rays &= rays - 1) {
+        const uint ray = lowest_bit64(rays);
+        const SlabFrame slabs = chunk_slabs(c, ray);
+        Query query = chunk_query(c, ray);
+        const uint before = query.best.primitive;
+        visit_spheres(block, &slabs, &query);
+        if (query.best.primitive == before) continue;
+        if (any_hit) query.best.t = -1.0f;
+        chunk_set_hit(c, ray, query.best);
+        found |= rays & -rays;
+    }
+    return found;
+}
+
+/// visit_leaf() for each ray of some; those that have found something new.
+static inline ulong stream_visit_leaf(RayChunk* c, const Geometry* geometry, uint child, ulong rays, bool one_frame,
+                                      bool any_hit) {
+    const uint first = child & CHILD_FIRST_MASK;
+    const uint last = first + (child >> CHILD_BLOCKS_SHIFT & CHILD_BLOCKS_MASK);
+    ulong found = 0;
+    for (uint block = first; block <= last; ++block) {
+        const ulong left = any_hit ? rays & ~found : rays;
+        found |= child & CHILD_SPHERES
+                     ? stream_visit_spheres(c, geometry->spheres + block, left, any_hit)
+                     : stream_visit_triangles(c, geometry->triangles + block, left, one_frame, any_hit);
+    }
+    return found;
+}
+
+/// Goes on below a child with rays whose directions have the same signs, from their best hits so far. Whether one of them has
+/// found something new. Closest hits may be left unfound if rays share_little(); not so any hits.
+static bool stream_below(const Geometry* scene, RayChunk* c, ulong rays, uint child, bool one_frame, bool any_hit,
+                         Sharing* sharing) {
+    const Geometry geometry = *scene;  // a copy that no store can change, for the compiler to keep in registers
+    const ChildMemory memory = child_memory(scene);
+    const uint most = any_hit ? AHEAD_FOR_ANY : AHEAD_FOR_CLOSEST;
+    Visit ahead[AHEAD_FOR_ANY];  // a ring
+    uint first = 0, count = 1;
+    ahead[0].child = child;
+    ahead[0].rays = rays;
+    Stream stream;
+    stream.top = 0;
+#pragma unroll
+    for (uint axis = 0; axis < 3; ++axis)
+        stream.sign[axis] = get_octant(c, lowest_bit64(rays)) >> (OCTANT_SIGN + axis) & 1u;
+    ulong done = 0;  // with any_hit, rays that have hit something
+    bool found = false;
+    while (count > 0) {
+        const Visit visit = ahead[first % AHEAD_FOR_ANY];
+        first += 1;
+        count -= 1;
+        const ulong meeting = visit.rays & ~done;
+        if (!any_hit) {
+            sharing->visits += 1;
+            sharing->rays += popcount(meeting);
+            if (share_little(sharing)) break;
+        }
+        if (visit.child & CHILD_LEAF) {
+            const ulong hit = stream_visit_leaf(c, &geometry, visit.child, meeting, one_frame, any_hit);
+            found |= hit != 0;
+            if (any_hit) done |= hit;
+        } else if (meeting != 0) {
+            stream_visit_node(&stream, c, geometry.nodes + visit.child, meeting, any_hit);
+        }
+        while (count < most && stream.top > 0) {
+            const uint top = --stream.top;
+            if ((stream.rays[top] & ~done) == 0) continue;
+            Visit* last = ahead + (first + count++) % AHEAD_FOR_ANY;
+            last->child = stream.child[top];
+            last->rays = stream.rays[top];
+            prefetch_next(&memory, last->child);
+        }
+    }
+    return found;
+}
+
+/// Finds what some rays of a chunk hit.
+static void stream_rays(const Geometry* geometry, RayChunk* c, ulong rays, bool any_hit) {
+    Sharing sharing = {0, 0};
+    for (ulong waiting = rays; waiting != 0;) {
+        // More rays share a visit if their largest axes need not be the same, but a visit takes longer: worth it where the
+        // order counts.
+        const uint octant = get_octant(c, lowest_bit64(waiting));
+        const ulong members = waiting & (any_hit ? rays_of_octant(c, octant) : rays_of_signs(c, octant));
+        stream_below(geometry, c, members, ROOT, any_hit, any_hit, &sharing);
+        waiting &= ~members;
+        if (!any_hit && share_little(&sharing)) {
+            fly_rays(geometry, c, rays);
+            return;
+        }
+    }
+}
+
+#endif
