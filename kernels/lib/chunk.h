@@ -22,7 +22,6 @@ typedef struct {
     float16 best_t[GROUPS], best_u[GROUPS], best_v[GROUPS];
     uint16 best_primitive[GROUPS];
     uint16 octant[GROUPS];
-    uint count;
     ulong rays;  // one bit each
 } RayChunk;
 
@@ -115,7 +114,6 @@ static inline float16 repeat_first(const float16* vectors, uint group, uint firs
 /// Those rays of a chunk that have a bit set, at least one and all of one octant, as a chunk: each stays in its place.
 static inline void chunk_part(RayChunk* part, const RayChunk* c, ulong rays) {
     const uint first = lowest_bit64(rays);
-    part->count = popcount(rays);
     part->rays = rays;
 #pragma unroll
     for (uint group = 0; group < GROUPS; ++group) {
@@ -154,7 +152,6 @@ static inline void chunk_merge(RayChunk* c, const RayChunk* part) {
 static inline void chunk_load(RayChunk* c, global const void* records, uint stride, bool have_end, uint count) {
     const uint16 lane = (uint16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
     global const float* words = records;
-    c->count = count;
     c->rays = ~0ul >> (CHUNK - count);
 #pragma unroll
     for (uint group = 0; group < GROUPS; ++group) {
@@ -185,16 +182,16 @@ static inline void chunk_load(RayChunk* c, global const void* records, uint stri
     chunk_frames(c);
 }
 
-/// Writes what the rays have found.
-static inline void chunk_store_hits(const RayChunk* c, global Hit* hits) {
+/// Writes what the first `count` rays have found.
+static inline void chunk_store_hits(const RayChunk* c, uint count, global Hit* hits) {
     for (uint group = 0; group < GROUPS; ++group) {
         const Lanes3 tuv = {c->best_t[group], c->best_u[group], c->best_v[group]};
         const Rows rows = rows_of(tuv, as_float16(c->best_primitive[group]));
-        if (GROUP * (group + 1) <= c->count) {
+        if (GROUP * (group + 1) <= count) {
 #pragma unroll
             for (uint part = 0; part < 4; ++part) vstore16(rows.part[part], 4 * group + part, (global float*)hits);
         } else {
-            for (uint i = GROUP * group; i < c->count; ++i) store_row(hits + i, row_of(&rows, i - GROUP * group));
+            for (uint i = GROUP * group; i < count; ++i) store_row(hits + i, row_of(&rows, i - GROUP * group));
         }
     }
 }

@@ -253,7 +253,7 @@ static void traverse_packet(const Geometry* geometry, Packet* p, bool any_hit) {
         const uint distance = (uint)(item >> 32), child = (uint)item;
         if (as_float(distance & ~(7u | ALL_GROUPS << ENTRY_GROUPS_SHIFT)) > p->farthest_of_all) continue;
         if (popcount(stack_rays[top]) < FEWEST_TOGETHER) {
-            if (stream_below(geometry, &p->rays, stack_rays[top], child, true, any_hit, &sharing)) update_farthest(p);
+            if (stream_below(geometry, &p->rays, stack_rays[top], child, any_hit, &sharing)) update_farthest(p);
             if (any_hit || !share_little(&sharing)) continue;
             fly_rays(geometry, &p->rays, p->rays.rays);
             return;
@@ -297,7 +297,15 @@ static inline bool are_close(const RayChunk* c) {
     return true;
 }
 
-/// Finds the closest hit of every ray of a chunk, or with any_hit whether there is one: of close rays of one octant together,
+/// Traces the rays of one octant together if they are close. Whether it did.
+static inline bool trace_together(const Geometry* geometry, Packet* p, bool any_hit) {
+    if (!are_close(&p->rays)) return false;
+    packet_prepare(p);
+    traverse_packet(geometry, p, any_hit);
+    return true;
+}
+
+/// Finds the closest hit of every ray of a chunk, or with any_hit whether there is one: of those that go the same way together,
 /// of all others as streams.
 static inline void traverse_chunk(const Geometry* geometry, Packet* p, bool any_hit) {
     RayChunk* c = &p->rays;
@@ -306,26 +314,25 @@ static inline void traverse_chunk(const Geometry* geometry, Packet* p, bool any_
         for (uint group = 0; group < GROUPS; ++group)
             c->best_t[group] = select(c->best_t[group], (float16)(-1.0f), c->best_primitive[group] != NO_INDEX);
     if (geometry->node_count == 0) return;
-    ulong waiting = c->rays, loose = 0;
-    while (waiting != 0) {
+    ulong loose = 0;
+    for (ulong waiting = c->rays; waiting != 0;) {
         const ulong members = waiting & rays_of_octant(c, get_octant(c, lowest_bit64(waiting)));
         waiting &= ~members;
-        if (members == c->rays && are_close(c)) {
-            packet_prepare(p);
-            traverse_packet(geometry, p, any_hit);
-            return;
+        bool traced = false;
+        if (members == c->rays && popcount(members) >= FEWEST_TOGETHER) {
+            traced = trace_together(geometry, p, any_hit);
+        } else if (popcount(members) >= FEWEST_TOGETHER) {
+            Packet part;
+            chunk_part(&part.rays, c, members);
+            traced = trace_together(geometry, &part, any_hit);
+            if (traced) chunk_merge(c, &part.rays);
         }
-        Packet part;
-        if (popcount(members) >= FEWEST_TOGETHER) chunk_part(&part.rays, c, members);
-        if (popcount(members) < FEWEST_TOGETHER || !are_close(&part.rays)) {
-            loose |= members;
-            continue;
-        }
-        packet_prepare(&part);
-        traverse_packet(geometry, &part, any_hit);
-        chunk_merge(c, &part.rays);
+        if (!traced) loose |= members;
     }
-    if (loose != 0) stream_rays(geometry, c, loose, any_hit);
+    if (any_hit)
+        stream_any_hits(geometry, c, loose);
+    else
+        stream_closest_hits(geometry, c, loose);
 }
 
 #endif

@@ -12,6 +12,8 @@
 #define AHEAD_FOR_CLOSEST 2
 #define AHEAD_FOR_ANY 8  // a power of two, and no less than the other
 
+#define STREAMS 8  // of a chunk: as many as combinations of signs
+
 // While one child is visited those ahead of it wait, and each may lead down to as many levels with seven that are left.
 #define STREAM_STACK (AHEAD_FOR_ANY * STACK_SIZE)
 
@@ -39,6 +41,11 @@ typedef struct {
 
 /// Whether they are so few that each had better choose its own order: thin triangles, whose boxes overlap everywhere.
 static inline bool share_little(const Sharing* s) { return s->visits > FEWEST_VISITS && 4 * s->rays < 7 * s->visits; }
+
+static inline void count_visit(Sharing* s, ulong rays) {
+    s->visits += 1;
+    s->rays += popcount(rays);
+}
 
 /// Pushes the children that some ray meets; for closest hits so that the one that is met soonest is on top. Without branches
 /// for up to two, as push_few() in flight.h.
@@ -148,65 +155,98 @@ static inline ulong stream_visit_leaf(RayChunk* c, const Geometry* geometry, uin
     return found;
 }
 
-/// Goes on below a child with rays whose directions have the same signs, from their best hits so far. Whether one of them has
-/// found something new. Closest hits may be left unfound if rays share_little(); not so any hits.
-static bool stream_below(const Geometry* scene, RayChunk* c, ulong rays, uint child, bool one_frame, bool any_hit,
-                         Sharing* sharing) {
+/// Makes a visit. With any_hit, the rays that are done by it; else those that have found something new.
+static inline ulong stream_visit(Stream* s, RayChunk* c, const Geometry* geometry, Visit visit, bool one_frame,
+                                 bool any_hit) {
+    if (visit.child & CHILD_LEAF) return stream_visit_leaf(c, geometry, visit.child, visit.rays, one_frame, any_hit);
+    stream_visit_node(s, c, geometry->nodes + visit.child, visit.rays, any_hit);
+    return 0;
+}
+
+/// Takes the next visit of rays that are not done from the stack, and asks for its memory. False if there is none.
+static inline bool stream_next(Stream* s, const ChildMemory* memory, ulong done, Visit* next) {
+    uint top = s->top;
+    do {
+        if (top == 0) return false;
+        next->rays = s->rays[--top] & ~done;
+    } while (next->rays == 0);
+    s->top = top;
+    next->child = s->child[top];
+    prefetch_next(memory, next->child);
+    return true;
+}
+
+static inline void stream_begin(Stream* s, const RayChunk* c, ulong rays) {
+    const uint octant = get_octant(c, lowest_bit64(rays));
+#pragma unroll
+    for (uint axis = 0; axis < 3; ++axis) s->sign[axis] = octant >> (OCTANT_SIGN + axis) & 1u;
+    s->top = 0;
+}
+
+/// Goes on below a child with rays of one octant, from their best hits so far. Whether one of them has found something new.
+/// Closest hits may be left unfound if rays share_little(); not so any hits.
+static bool stream_below(const Geometry* scene, RayChunk* c, ulong rays, uint child, bool any_hit, Sharing* sharing) {
     const Geometry geometry = *scene;  // a copy that no store can change, for the compiler to keep in registers
     const ChildMemory memory = child_memory(scene);
     const uint most = any_hit ? AHEAD_FOR_ANY : AHEAD_FOR_CLOSEST;
-    Visit ahead[AHEAD_FOR_ANY];  // a ring
-    uint first = 0, count = 1;
-    ahead[0].child = child;
-    ahead[0].rays = rays;
     Stream stream;
-    stream.top = 0;
-#pragma unroll
-    for (uint axis = 0; axis < 3; ++axis)
-        stream.sign[axis] = get_octant(c, lowest_bit64(rays)) >> (OCTANT_SIGN + axis) & 1u;
-    ulong done = 0;  // with any_hit, rays that have hit something
-    bool found = false;
+    stream_begin(&stream, c, rays);
+    Visit ahead[AHEAD_FOR_ANY] = {{child, rays}};  // a ring
+    uint first = 0, count = 1;
+    ulong found = 0;
     while (count > 0) {
-        const Visit visit = ahead[first % AHEAD_FOR_ANY];
+        Visit visit = ahead[first % AHEAD_FOR_ANY];
         first += 1;
         count -= 1;
-        const ulong meeting = visit.rays & ~done;
-        if (!any_hit) {
-            sharing->visits += 1;
-            sharing->rays += popcount(meeting);
+        if (any_hit) {
+            visit.rays &= ~found;
+        } else {
+            count_visit(sharing, visit.rays);
             if (share_little(sharing)) break;
         }
-        if (visit.child & CHILD_LEAF) {
-            const ulong hit = stream_visit_leaf(c, &geometry, visit.child, meeting, one_frame, any_hit);
-            found |= hit != 0;
-            if (any_hit) done |= hit;
-        } else if (meeting != 0) {
-            stream_visit_node(&stream, c, geometry.nodes + visit.child, meeting, any_hit);
-        }
-        while (count < most && stream.top > 0) {
-            const uint top = --stream.top;
-            if ((stream.rays[top] & ~done) == 0) continue;
-            Visit* last = ahead + (first + count++) % AHEAD_FOR_ANY;
-            last->child = stream.child[top];
-            last->rays = stream.rays[top];
-            prefetch_next(&memory, last->child);
-        }
+        if (visit.rays != 0) found |= stream_visit(&stream, c, &geometry, visit, true, any_hit);
+        while (count < most && stream_next(&stream, &memory, any_hit ? found : 0, ahead + (first + count) % AHEAD_FOR_ANY))
+            count += 1;
     }
-    return found;
+    return found != 0;
 }
 
-/// Finds what some rays of a chunk hit.
-static void stream_rays(const Geometry* geometry, RayChunk* c, ulong rays, bool any_hit) {
+/// Finds whether some rays of a chunk hit anything.
+static void stream_any_hits(const Geometry* geometry, RayChunk* c, ulong rays) {
     Sharing sharing = {0, 0};
-    for (ulong waiting = rays; waiting != 0;) {
-        // More rays share a visit if their largest axes need not be the same, but a visit takes longer: worth it where the
-        // order counts.
-        const uint octant = get_octant(c, lowest_bit64(waiting));
-        const ulong members = waiting & (any_hit ? rays_of_octant(c, octant) : rays_of_signs(c, octant));
-        stream_below(geometry, c, members, ROOT, any_hit, any_hit, &sharing);
-        waiting &= ~members;
-        if (!any_hit && share_little(&sharing)) {
-            fly_rays(geometry, c, rays);
+    while (rays != 0) {
+        const ulong members = rays & rays_of_octant(c, get_octant(c, lowest_bit64(rays)));
+        stream_below(geometry, c, members, ROOT, true, &sharing);
+        rays &= ~members;
+    }
+}
+
+/// Finds the closest hits of some rays of a chunk, several streams in flight: while the memory that one asks for is on its
+/// way, the others make their visits. Rays of a stream need not have the same largest axis: more of them share a visit.
+static void stream_closest_hits(const Geometry* scene, RayChunk* c, ulong rays) {
+    const Geometry geometry = *scene;
+    const ChildMemory memory = child_memory(scene);
+    Stream streams[STREAMS];
+    Visit visits[STREAMS];
+    uchar active[STREAMS];  // in the first places, streams that are not over
+    uint count = 0;
+    for (ulong waiting = rays; waiting != 0; waiting &= ~visits[count++].rays) {
+        visits[count].child = ROOT;
+        visits[count].rays = waiting & rays_of_signs(c, get_octant(c, lowest_bit64(waiting)));
+        active[count] = count;
+        stream_begin(streams + count, c, visits[count].rays);
+    }
+    Sharing sharing = {0, 0};
+    while (count > 0) {
+        for (uint i = 0; i < count; ++i) {
+            Stream* s = streams + active[i];
+            Visit* visit = visits + active[i];
+            count_visit(&sharing, visit->rays);
+            stream_visit(s, c, &geometry, *visit, false, false);
+            if (!stream_next(s, &memory, 0, visit)) active[i--] = active[--count];
+        }
+        if (share_little(&sharing)) {
+            fly_rays(scene, c, rays);
             return;
         }
     }

@@ -10,7 +10,7 @@ COMPILED_ONCE static void find_hits(const Geometry* geometry, global const Ray* 
     Packet packet;
     chunk_load(&packet.rays, rays, WORDS(Ray), false, count);
     traverse_chunk(geometry, &packet, false);
-    chunk_store_hits(&packet.rays, hits);
+    chunk_store_hits(&packet.rays, count, hits);
 }
 
 /// For each shadow ray some primitive that stands in its way, or NO_INDEX. blockers has RAYS_A_WORK_ITEM places.
