@@ -44,6 +44,12 @@ static inline void chunk_set_hit(RayChunk* c, uint i, Hit hit) {
     ((uint*)c->best_primitive)[i] = hit.primitive;
 }
 
+/// Ray i of a search for any hits is done: this stands in its way.
+static inline void chunk_block(RayChunk* c, uint i, uint primitive) {
+    set_lane(c->best_t, i, -1.0f);
+    ((uint*)c->best_primitive)[i] = primitive;
+}
+
 /// slab_frame() of a group on one axis.
 static inline void prepare_slabs(RayChunk* c, uint group, uint axis) {
     const float16 direction = c->direction[axis][group];

@@ -11,8 +11,8 @@
 #define ENTRY_GROUPS_SHIFT 3u  // in a stack entry, above the lane
 
 // Directions that differ by more than this on an axis share too few nodes to be worth it.
-#define COHERENT_SPREAD 0.7f
-#define FEWEST_TOGETHER 20  // rays of a packet, and of those that meet a child: fewer go on as a stream
+#define COHERENT_SPREAD 0.4f
+#define FEWEST_TOGETHER 24  // rays of a packet, and of those that meet a child: fewer go on as a stream
 
 /// A block of triangles as all rays of a packet see it: corners along the axes of its triangle frame, from the origin of a
 /// pinhole's rays, and per axis of the world the planes through which rays enter each triangle's bounds.

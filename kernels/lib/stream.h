@@ -113,10 +113,13 @@ static inline ulong stream_visit_triangles(RayChunk* c, global const TriangleBlo
         float8 t, u, v;
         const uint mask = intersect_triangles(block, &slabs, frame, get_lane(c->best_t, ray), &t, &u, &v);
         if (mask == 0) continue;
-        Query query = chunk_query(c, ray);
-        if (!take_best(&query, block->primitive, mask, t, u, v)) continue;
-        if (any_hit) query.best.t = -1.0f;  // the ray is done
-        chunk_set_hit(c, ray, query.best);
+        if (any_hit) {
+            chunk_block(c, ray, block->primitive[lowest_bit(mask)]);
+        } else {
+            Query query = chunk_query(c, ray);
+            if (!take_best(&query, block->primitive, mask, t, u, v)) continue;
+            chunk_set_hit(c, ray, query.best);
+        }
         found |= rays & -rays;
     }
     return found;
@@ -133,8 +136,10 @@ static __attribute__((noinline)) ulong stream_visit_spheres(RayChunk* c, global 
         const uint before = query.best.primitive;
         visit_spheres(block, &slabs, &query);
         if (query.best.primitive == before) continue;
-        if (any_hit) query.best.t = -1.0f;
-        chunk_set_hit(c, ray, query.best);
+        if (any_hit)
+            chunk_block(c, ray, query.best.primitive);
+        else
+            chunk_set_hit(c, ray, query.best);
         found |= rays & -rays;
     }
     return found;
