@@ -13,8 +13,8 @@
 #define OCTANT_AXIS 3u
 #define OCTANT_SIGN 2u
 
-/// Up to CHUNK rays: ray i is lane i % GROUP of vector i / GROUP. Places without a ray repeat one, with best_t = -1, which no
-/// distance is below: what is tested finds nothing for them.
+/// Up to CHUNK rays: ray i is lane i % GROUP of vector i / GROUP. Places without a ray repeat one, with best_t = -1, which
+/// no distance is below: what is tested finds nothing for them.
 typedef struct {
     float16 origin[3][GROUPS], direction[3][GROUPS];
     float16 inverse[3][GROUPS], near[3][GROUPS], far[3][GROUPS];  // SlabFrame
@@ -45,7 +45,7 @@ static inline void chunk_set_hit(RayChunk* c, uint i, Hit hit) {
 }
 
 /// Ray i of a search for any hits is done: this stands in its way.
-static inline void chunk_block(RayChunk* c, uint i, uint primitive) {
+static inline void chunk_set_blocker(RayChunk* c, uint i, uint primitive) {
     set_lane(c->best_t, i, -1.0f);
     ((uint*)c->best_primitive)[i] = primitive;
 }

@@ -254,7 +254,7 @@ static void traverse_packet(const Geometry* geometry, Packet* p, bool any_hit) {
         if (as_float(distance & ~(7u | ALL_GROUPS << ENTRY_GROUPS_SHIFT)) > p->farthest_of_all) continue;
         if (popcount(stack_rays[top]) < FEWEST_TOGETHER) {
             if (stream_below(geometry, &p->rays, stack_rays[top], child, any_hit, &sharing)) update_farthest(p);
-            if (any_hit || !share_little(&sharing)) continue;
+            if (!share_little(&sharing)) continue;
             fly_rays(geometry, &p->rays, p->rays.rays);
             return;
         }
@@ -284,29 +284,30 @@ static void traverse_packet(const Geometry* geometry, Packet* p, bool any_hit) {
     }
 }
 
-/// Whether the rays, all of one octant, share so much of the hierarchy that they are better traced together.
-static inline bool are_close(const RayChunk* c) {
+/// Whether those rays of a chunk that have a bit set, all of one octant, share so much of the hierarchy that they are better
+/// traced together.
+static inline bool go_together(const RayChunk* c, ulong rays) {
+    if (popcount(rays) < FEWEST_TOGETHER) return false;
     for (uint axis = 0; axis < 3; ++axis) {
-        float16 lower = c->direction[axis][0], upper = lower;
-        for (uint group = 1; group < GROUPS; ++group) {
-            lower = min16(lower, c->direction[axis][group]);
-            upper = max16(upper, c->direction[axis][group]);
+        float16 lower = (float16)(INFINITY), upper = (float16)(-INFINITY);
+#pragma unroll
+        for (uint group = 0; group < GROUPS; ++group) {
+            const int16 is_in = lanes_of_rays(rays, group);
+            lower = select(lower, min16(lower, c->direction[axis][group]), is_in);
+            upper = select(upper, max16(upper, c->direction[axis][group]), is_in);
         }
         if (max_lane(upper) - min_lane(lower) > COHERENT_SPREAD) return false;
     }
     return true;
 }
 
-/// Traces the rays of one octant together if they are close. Whether it did.
-static inline bool trace_together(const Geometry* geometry, Packet* p, bool any_hit) {
-    if (!are_close(&p->rays)) return false;
+static inline void trace_together(const Geometry* geometry, Packet* p, bool any_hit) {
     packet_prepare(p);
     traverse_packet(geometry, p, any_hit);
-    return true;
 }
 
-/// Finds the closest hit of every ray of a chunk, or with any_hit whether there is one: of those that go the same way together,
-/// of all others as streams.
+/// Finds the closest hit of every ray of a chunk, or with any_hit whether there is one: rays that go the same way together,
+/// all others as streams.
 static inline void traverse_chunk(const Geometry* geometry, Packet* p, bool any_hit) {
     RayChunk* c = &p->rays;
     chunk_visit_planes(c, geometry);
@@ -318,16 +319,16 @@ static inline void traverse_chunk(const Geometry* geometry, Packet* p, bool any_
     for (ulong waiting = c->rays; waiting != 0;) {
         const ulong members = waiting & rays_of_octant(c, get_octant(c, lowest_bit64(waiting)));
         waiting &= ~members;
-        bool traced = false;
-        if (members == c->rays && popcount(members) >= FEWEST_TOGETHER) {
-            traced = trace_together(geometry, p, any_hit);
-        } else if (popcount(members) >= FEWEST_TOGETHER) {
+        if (!go_together(c, members)) {
+            loose |= members;
+        } else if (members == c->rays) {
+            trace_together(geometry, p, any_hit);
+        } else {
             Packet part;
             chunk_part(&part.rays, c, members);
-            traced = trace_together(geometry, &part, any_hit);
-            if (traced) chunk_merge(c, &part.rays);
+            trace_together(geometry, &part, any_hit);
+            chunk_merge(c, &part.rays);
         }
-        if (!traced) loose |= members;
     }
     if (any_hit)
         stream_any_hits(geometry, c, loose);

@@ -1,20 +1,23 @@
 // Rays of a chunk that visit the hierarchy together but are tested one by one, each against eight boxes or triangles: for
 // rays too few or too far apart to be a packet. The memory of a visit, the wait for it and the choice of what comes next
 // serve all rays that share it. What a ray finds is what traverse() finds for it.
-// Source: Barringer, Akenine-Moller, "Dynamic Ray Stream Traversal", ACM Transactions on Graphics 33(4), 2014.
+// Source: Tsakok, "Faster Incoherent Rays: Multi-BVH Ray Stream Tracing", High Performance Graphics 2009.
+// Deviations: masks of at most 64 rays instead of lists, and memory asked for ahead.
 #ifndef RAYMILL_STREAM_H
 #define RAYMILL_STREAM_H
 
 #include "lib/flight.h"
 
-// Children whose memory is asked for before they are visited. One that comes late serves closest hits less, as nearer ones
-// should be known by then; of any hits, no order is better than another.
+// Visits whose memory is asked for before their turn. Closest hits lose by visits chosen early what hits found meanwhile would
+// have culled; of any hits, no order is better than another.
 #define AHEAD_FOR_CLOSEST 2
 #define AHEAD_FOR_ANY 8  // a power of two, and no less than the other
 
 #define STREAMS 8  // of a chunk: as many as combinations of signs
 
-// While one child is visited those ahead of it wait, and each may lead down to as many levels with seven that are left.
+// Between the choice of a child and the visit that pushes its children, as many others are made as are ahead, less one, and
+// each pushes the children of one node: so a level has at most eight nodes' on the stack, and all but the newest of them
+// seven each. With one ahead it is the stack of a ray alone.
 #define STREAM_STACK (AHEAD_FOR_ANY * STACK_SIZE)
 
 #define FEWEST_VISITS 128  // before it is judged how many rays share one
@@ -29,8 +32,7 @@ typedef struct {
 typedef struct {
     uint sign[3];  // as in SlabFrame
     uint top;      // of the stack
-    uint child[STREAM_STACK];
-    ulong rays[STREAM_STACK];
+    Visit* stack;
 } Stream;
 
 /// How many rays share a visit.
@@ -58,8 +60,8 @@ static inline void stream_push(Stream* s, global const uint* children, const ulo
         if (!any_hit) vstore8(places_by_distance(as_uint8(soonest), mask), 0, place);
         for (uint i = 0; mask != 0; ++i, mask &= mask - 1) {
             const uint lane = lowest_bit(mask), to = top + (any_hit ? i : place[lane]);
-            s->child[to] = children[lane];
-            s->rays[to] = rays[lane];
+            s->stack[to].child = children[lane];
+            s->stack[to].rays = rays[lane];
         }
         return;
     }
@@ -67,10 +69,10 @@ static inline void stream_push(Stream* s, global const uint* children, const ulo
     vstore8(as_uint8(soonest), 0, key);
     const uint first = lowest_bit(mask | 0x80u), last = 31u - clz(mask | 1u);
     const uint near = any_hit || key[first] < key[last] ? first : last, far = first ^ last ^ near;
-    s->child[top] = children[far];
-    s->rays[top] = rays[far];
-    s->child[top + 1] = children[near];
-    s->rays[top + 1] = rays[near];
+    s->stack[top].child = children[far];
+    s->stack[top].rays = rays[far];
+    s->stack[top + 1].child = children[near];
+    s->stack[top + 1].rays = rays[near];
 }
 
 /// intersect_children() for each ray of some, at least one, and what they meet pushed.
@@ -114,7 +116,7 @@ static inline ulong stream_visit_triangles(RayChunk* c, global const TriangleBlo
         const uint mask = intersect_triangles(block, &slabs, frame, get_lane(c->best_t, ray), &t, &u, &v);
         if (mask == 0) continue;
         if (any_hit) {
-            chunk_block(c, ray, block->primitive[lowest_bit(mask)]);
+            chunk_set_blocker(c, ray, block->primitive[lowest_bit(mask)]);
         } else {
             Query query = chunk_query(c, ray);
             if (!take_best(&query, block->primitive, mask, t, u, v)) continue;
@@ -137,7 +139,7 @@ static __attribute__((noinline)) ulong stream_visit_spheres(RayChunk* c, global 
         visit_spheres(block, &slabs, &query);
         if (query.best.primitive == before) continue;
         if (any_hit)
-            chunk_block(c, ray, query.best.primitive);
+            chunk_set_blocker(c, ray, query.best.primitive);
         else
             chunk_set_hit(c, ray, query.best);
         found |= rays & -rays;
@@ -153,6 +155,7 @@ static inline ulong stream_visit_leaf(RayChunk* c, const Geometry* geometry, uin
     ulong found = 0;
     for (uint block = first; block <= last; ++block) {
         const ulong left = any_hit ? rays & ~found : rays;
+        if (left == 0) break;
         found |= child & CHILD_SPHERES
                      ? stream_visit_spheres(c, geometry->spheres + block, left, any_hit)
                      : stream_visit_triangles(c, geometry->triangles + block, left, one_frame, any_hit);
@@ -173,19 +176,20 @@ static inline bool stream_next(Stream* s, const ChildMemory* memory, ulong done,
     uint top = s->top;
     do {
         if (top == 0) return false;
-        next->rays = s->rays[--top] & ~done;
+        next->rays = s->stack[--top].rays & ~done;
     } while (next->rays == 0);
     s->top = top;
-    next->child = s->child[top];
+    next->child = s->stack[top].child;
     prefetch_next(memory, next->child);
     return true;
 }
 
-static inline void stream_begin(Stream* s, const RayChunk* c, ulong rays) {
+static inline void stream_begin(Stream* s, const RayChunk* c, ulong rays, Visit* stack) {
     const uint octant = get_octant(c, lowest_bit64(rays));
 #pragma unroll
     for (uint axis = 0; axis < 3; ++axis) s->sign[axis] = octant >> (OCTANT_SIGN + axis) & 1u;
     s->top = 0;
+    s->stack = stack;
 }
 
 /// Goes on below a child with rays of one octant, from their best hits so far. Whether one of them has found something new.
@@ -194,8 +198,9 @@ static bool stream_below(const Geometry* scene, RayChunk* c, ulong rays, uint ch
     const Geometry geometry = *scene;  // a copy that no store can change, for the compiler to keep in registers
     const ChildMemory memory = child_memory(scene);
     const uint most = any_hit ? AHEAD_FOR_ANY : AHEAD_FOR_CLOSEST;
+    Visit stack[STREAM_STACK];
     Stream stream;
-    stream_begin(&stream, c, rays);
+    stream_begin(&stream, c, rays, stack);
     Visit ahead[AHEAD_FOR_ANY] = {{child, rays}};  // a ring
     uint first = 0, count = 1;
     ulong found = 0;
@@ -231,6 +236,7 @@ static void stream_any_hits(const Geometry* geometry, RayChunk* c, ulong rays) {
 static void stream_closest_hits(const Geometry* scene, RayChunk* c, ulong rays) {
     const Geometry geometry = *scene;
     const ChildMemory memory = child_memory(scene);
+    Visit stacks[STREAMS][STACK_SIZE];
     Stream streams[STREAMS];
     Visit visits[STREAMS];
     uchar active[STREAMS];  // in the first places, streams that are not over
@@ -239,7 +245,7 @@ static void stream_closest_hits(const Geometry* scene, RayChunk* c, ulong rays) 
         visits[count].child = ROOT;
         visits[count].rays = waiting & rays_of_signs(c, get_octant(c, lowest_bit64(waiting)));
         active[count] = count;
-        stream_begin(streams + count, c, visits[count].rays);
+        stream_begin(streams + count, c, visits[count].rays, stacks[count]);
     }
     Sharing sharing = {0, 0};
     while (count > 0) {
@@ -250,7 +256,7 @@ static void stream_closest_hits(const Geometry* scene, RayChunk* c, ulong rays) 
             stream_visit(s, c, &geometry, *visit, false, false);
             if (!stream_next(s, &memory, 0, visit)) active[i--] = active[--count];
         }
-        if (share_little(&sharing)) {
+        if (count > 0 && share_little(&sharing)) {
             fly_rays(scene, c, rays);
             return;
         }

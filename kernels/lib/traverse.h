@@ -1,4 +1,4 @@
-// The closest hit, or any: one ray through the eight-wide hierarchy, and then the infinite planes.
+// The closest hit, or any: one ray with the infinite planes, and through the eight-wide hierarchy.
 // What is found does not depend on the hierarchy: see slabs.h for the boxes, and is_later for ties.
 // Source: node layout and octant order, Wald et al., "Getting Rid of Packets", 2008.
 #ifndef RAYMILL_TRAVERSE_H

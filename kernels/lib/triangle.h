@@ -96,9 +96,11 @@ static inline float8 enter_triangles(global const TriangleBlock* block, const Sl
 }
 
 /// Hits of the block's triangles: distance and barycentric weights of vertices 1 and 2 by lane. The mask says which lanes
-/// hit at a distance in (0, t_max] that is certainly positive.
-static inline __attribute__((always_inline)) uint intersect_triangles(global const TriangleBlock* block, const SlabFrame* slabs, TriangleFrame f,
-                                       float t_max, float8* t, float8* u, float8* v) {
+/// hit at a distance in (0, t_max] that is certainly positive. Inline wherever it is asked for: a frame that is passed by
+/// value is written in words and read as vectors, which wait for the words to leave the store buffer.
+static inline __attribute__((always_inline)) uint intersect_triangles(global const TriangleBlock* block,
+                                                                      const SlabFrame* slabs, TriangleFrame f,
+                                                                      float t_max, float8* t, float8* u, float8* v) {
     global const float* p = &block->position[0][0][0];
     global const float *x = p + f.x * BVH_WIDTH, *y = p + f.y * BVH_WIDTH, *z = p + f.z * BVH_WIDTH;
     const float8 az = aligned8(z) - f.origin_z;

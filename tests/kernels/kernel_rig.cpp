@@ -9,7 +9,6 @@
 #include <optional>
 
 #include "device/program.hpp"
-#include "wavefront/stages.hpp"
 
 namespace raymill::test {
 
@@ -28,9 +27,9 @@ class Shared : public testing::Environment {
         if (!device_) device_.emplace(open_device("", 0));
         return *device_;
     }
-    Stages& stages() {
-        if (!stages_) stages_.emplace(device(), 0, kernel_folder());
-        return *stages_;
+    Stages& stages(Traversal traversal) {
+        if (!stages_.contains(traversal)) stages_.try_emplace(traversal, device(), 0, kernel_folder(), traversal);
+        return stages_.at(traversal);
     }
     const cl::Program& probe(const std::string& file) {
         const std::string folder = kernel_folder().empty() ? RAYMILL_SOURCE_DIR "/kernels" : kernel_folder();
@@ -43,13 +42,13 @@ class Shared : public testing::Environment {
     }
     void TearDown() override {
         probes_.clear();
-        stages_.reset();
+        stages_.clear();
         device_.reset();
     }
 
   private:
     std::optional<Device> device_;
-    std::optional<Stages> stages_;
+    std::map<Traversal, Stages> stages_;
     std::map<std::string, cl::Program> probes_;
 };
 
@@ -60,8 +59,8 @@ const Device& device() {
     return shared->device();
 }
 
-Stages& stages() {
-    return shared->stages();
+Stages& stages(Traversal traversal = Traversal::automatic) {
+    return shared->stages(traversal);
 }
 
 /// An output buffer of the kernel: `capacity` items and the guards.
@@ -108,6 +107,7 @@ struct KernelRig::Parts {
     Bvh bvh;  // the scene may share its memory
     DeviceScene scene;
     std::size_t film_pixels;  // of all planes
+    Traversal traversal = Traversal::automatic;
 };
 
 KernelRig::KernelRig(const Scene& scene)
@@ -124,6 +124,10 @@ KernelRig::KernelRig(const Scene& scene, const FilmPlanes& planes) {
 
 KernelRig::~KernelRig() = default;
 
+void KernelRig::use(Traversal traversal) {
+    parts_->traversal = traversal;
+}
+
 std::vector<Ray> KernelRig::generate(std::uint64_t first_sample, uint count) const {
     Buffer<Ray> rays = guarded<Ray>(count);
     stages().generate(parts_->scene, first_sample, count, rays);
@@ -136,7 +140,7 @@ IntersectResult KernelRig::intersect(std::span<const Ray> rays, uint first, bool
     Buffer<Hit> hits = guarded<Hit>(count);
     Film film = film_for(rays);
     film.pixels_once = pixels_once;
-    stages().intersect(parts_->scene, {queue, first, count}, hits, film);
+    stages(parts_->traversal).intersect(parts_->scene, {queue, first, count}, hits, film);
     return {hits.read(device()), read(film)};
 }
 
@@ -163,7 +167,7 @@ FilmState KernelRig::features(std::span<const Ray> rays, std::span<const Hit> hi
 FilmState KernelRig::shadow(std::span<const ShadowRay> rays, std::span<const uint> counts) const {
     const ShadowQueue queue{filled(rays), filled(counts)};
     Film film = film_for(rays);
-    stages().shadow(parts_->scene, queue, static_cast<uint>(counts.size()), film);
+    stages(parts_->traversal).shadow(parts_->scene, queue, static_cast<uint>(counts.size()), film);
     return read(film);
 }
 

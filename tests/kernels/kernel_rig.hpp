@@ -11,6 +11,7 @@
 #include "bvh/bvh.hpp"
 #include "scene/scene.hpp"
 #include "wavefront/film_planes.hpp"
+#include "wavefront/stages.hpp"
 
 namespace raymill::test {
 
@@ -74,6 +75,9 @@ class KernelRig {
     /// With planes beside the beauty, which `features` adds to.
     KernelRig(const Scene& scene, const FilmPlanes& planes);
     ~KernelRig();
+
+    /// How kernels trace from now on; before, as suits the device.
+    void use(Traversal traversal);
 
     std::vector<Ray> generate(std::uint64_t first_sample, uint count) const;
     /// Rays [first, end) of the queue. pixels_once: no two of them share a pixel.
