@@ -19,7 +19,7 @@ struct Bundle {
 // One packet; one that comes apart; two octants or more; some strays beside a packet; strays alone.
 const Bundle BUNDLES[] = {{CHUNK, 0.02f}, {CHUNK, 0.3f}, {CHUNK, 1.0f}, {40, 0.05f}, {24, 0.2f}, {0, 0.0f}};
 
-/// Whole chunks of every bundle, and one that is not full. Every fifth ray's path ends soon.
+/// Whole chunks of every bundle; the last one is not full.
 template <class Item, class Make>
 std::vector<Item> bundles(std::size_t rounds, std::uint32_t seed, const Make& make) {
     Random random(seed);
@@ -66,7 +66,7 @@ void expect_the_same_together(const Scene& scene, std::uint32_t seed) {
         ShadowRay ray{};
         store(ray.origin, from);
         store(ray.direction, towards(from, to));
-        ray.t_max = i % 5 == 0 ? 0.2f : glm::length(to - from);
+        ray.t_max = i % 5 == 0 ? 0.2f : glm::length(to - from);  // every fifth ends soon
         ray.pixel = i;
         ray.diffuse[0] = 1;
         return ray;
