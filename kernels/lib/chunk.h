@@ -28,6 +28,11 @@ typedef struct {
 static inline float get_lane(const float16* vectors, uint i) { return ((const float*)vectors)[i]; }
 static inline void set_lane(float16* vectors, uint i, float value) { ((float*)vectors)[i] = value; }
 
+/// Ray i's vector of three, given along each axis.
+static inline float3 get_vector(const float16 (*axes)[GROUPS], uint i) {
+    return (float3)(get_lane(axes[0], i), get_lane(axes[1], i), get_lane(axes[2], i));
+}
+
 static inline uint get_octant(const RayChunk* c, uint i) { return ((const uint*)c->octant)[i]; }
 
 /// What ray i has found.
@@ -226,8 +231,8 @@ static inline void chunk_visit_planes(RayChunk* c, const Geometry* geometry) {
 /// What ray i looks for: something nearer than its best hit so far.
 static inline Query chunk_query(const RayChunk* c, uint i) {
     Query query;
-    query.origin = (float3)(get_lane(c->origin[0], i), get_lane(c->origin[1], i), get_lane(c->origin[2], i));
-    query.direction = (float3)(get_lane(c->direction[0], i), get_lane(c->direction[1], i), get_lane(c->direction[2], i));
+    query.origin = get_vector(c->origin, i);
+    query.direction = get_vector(c->direction, i);
     query.after = no_hit(0.0f);
     query.best = chunk_hit(c, i);
     return query;
@@ -236,9 +241,9 @@ static inline Query chunk_query(const RayChunk* c, uint i) {
 /// slab_frame() of ray i.
 static inline SlabFrame chunk_slabs(const RayChunk* c, uint i) {
     SlabFrame f;
-    f.inverse = (float3)(get_lane(c->inverse[0], i), get_lane(c->inverse[1], i), get_lane(c->inverse[2], i));
-    f.near = (float3)(get_lane(c->near[0], i), get_lane(c->near[1], i), get_lane(c->near[2], i));
-    f.far = (float3)(get_lane(c->far[0], i), get_lane(c->far[1], i), get_lane(c->far[2], i));
+    f.inverse = get_vector(c->inverse, i);
+    f.near = get_vector(c->near, i);
+    f.far = get_vector(c->far, i);
 #pragma unroll
     for (uint axis = 0; axis < 3; ++axis) f.sign[axis] = get_octant(c, i) >> (OCTANT_SIGN + axis) & 1u;
     return f;

@@ -9,16 +9,18 @@
 /// Where the ray enters and leaves the bounds of the block's spheres along one axis.
 static inline void clip_axis(float8 center, float8 radius, float inverse, float near, float far, float8* enter,
                              float8* leave) {
-    const float8 lower = center - radius, upper = center + radius;
-    const float8 first = inverse < 0.0f ? upper : lower, last = inverse < 0.0f ? lower : upper;
-    *enter = max8(fma(first, (float8)(inverse), (float8)(near)), *enter);
-    *leave = min8(fma(last, (float8)(inverse), (float8)(far)), *leave);
+    const float8 along = copysign(radius, (float8)(inverse));
+    *enter = max8(fma(center - along, (float8)(inverse), (float8)(near)), *enter);
+    *leave = min8(fma(center + along, (float8)(inverse), (float8)(far)), *leave);
 }
 
 /// The next hits after `after` in the order of distance and id: distances by lane, and the lanes that hit up to t_max.
 /// A ray must meet a sphere's own bounds, and meets it no earlier: else a box might cull what rounding puts beside it.
-static inline uint intersect_spheres(global const SphereBlock* block, const SlabFrame* slabs, float3 origin,
-                                     float3 direction, Hit after, float t_max, float8* t) {
+/// Inline for the reason that intersect_triangles() is.
+static inline __attribute__((always_inline)) uint intersect_spheres(global const SphereBlock* block,
+                                                                    const SlabFrame* slabs, float3 origin,
+                                                                    float3 direction, Hit after, float t_max,
+                                                                    float8* t) {
     const float8 cx = vload8(0, block->center[0]), cy = vload8(0, block->center[1]), cz = vload8(0, block->center[2]);
     const float8 fx = origin.x - cx, fy = origin.y - cy, fz = origin.z - cz;
     const float8 r = vload8(0, block->radius);

@@ -103,6 +103,20 @@ static inline void stream_visit_node(Stream* s, const RayChunk* c, global const 
     stream_push(s, node->child, of_child, lane_mask(convert_int8(meeting != 0)), soonest, any_hit);
 }
 
+/// Takes the best of a block's hits as that of a ray, or any of them as its blocker; whether it did. mask: the lanes hit,
+/// at least one.
+static inline bool stream_take(RayChunk* c, uint ray, global const uint* primitives, uint mask, float8 t, float8 u, float8 v,
+                               bool any_hit) {
+    if (any_hit) {
+        chunk_set_blocker(c, ray, primitives[lowest_bit(mask)]);
+        return true;
+    }
+    Query query = chunk_query(c, ray);
+    if (!take_best(&query, primitives, mask, t, u, v)) return false;
+    chunk_set_hit(c, ray, query.best);
+    return true;
+}
+
 /// Tests rays against a block of triangles; those that have found something new. one_frame: they share octant_axes().
 static inline ulong stream_visit_triangles(RayChunk* c, global const TriangleBlock* block, ulong rays, bool one_frame,
                                            bool any_hit) {
@@ -115,14 +129,7 @@ static inline ulong stream_visit_triangles(RayChunk* c, global const TriangleBlo
         float8 t, u, v;
         const uint mask = intersect_triangles(block, &slabs, frame, get_lane(c->best_t, ray), &t, &u, &v);
         if (mask == 0) continue;
-        if (any_hit) {
-            chunk_set_blocker(c, ray, block->primitive[lowest_bit(mask)]);
-        } else {
-            Query query = chunk_query(c, ray);
-            if (!take_best(&query, block->primitive, mask, t, u, v)) continue;
-            chunk_set_hit(c, ray, query.best);
-        }
-        found |= rays & -rays;
+        if (stream_take(c, ray, block->primitive, mask, t, u, v, any_hit)) found |= rays & -rays;
     }
     return found;
 }
@@ -134,15 +141,12 @@ static __attribute__((noinline)) ulong stream_visit_spheres(RayChunk* c, global 
     for (; rays != 0; rays &= rays - 1) {
         const uint ray = lowest_bit64(rays);
         const SlabFrame slabs = chunk_slabs(c, ray);
-        Query query = chunk_query(c, ray);
-        const uint before = query.best.primitive;
-        visit_spheres(block, &slabs, &query);
-        if (query.best.primitive == before) continue;
-        if (any_hit)
-            chunk_set_blocker(c, ray, query.best.primitive);
-        else
-            chunk_set_hit(c, ray, query.best);
-        found |= rays & -rays;
+        float8 t;
+        const uint mask = intersect_spheres(block, &slabs, get_vector(c->origin, ray), get_vector(c->direction, ray),
+                                            no_hit(0.0f), get_lane(c->best_t, ray), &t);
+        if (mask == 0) continue;
+        const float8 zero = (float8)(0.0f);
+        if (stream_take(c, ray, block->primitive, mask, t, zero, zero, any_hit)) found |= rays & -rays;
     }
     return found;
 }
