@@ -13,6 +13,10 @@
 #define OCTANT_AXIS 3u
 #define OCTANT_SIGN 2u
 
+// Bytes of the next chunk asked for while one is loaded, and by each visit. Multiples of cache lines.
+#define ASKED_FIRST 1024
+#define ASKED_A_VISIT 512
+
 /// Up to CHUNK rays: ray i is lane i % GROUP of vector i / GROUP. Places without a ray repeat one, with best_t = -1, which
 /// no distance is below: what is tested finds nothing for them.
 typedef struct {
@@ -23,6 +27,7 @@ typedef struct {
     uint16 best_primitive[GROUPS];
     uint16 octant[GROUPS];
     ulong rays;  // one bit each
+    global const uchar *unasked, *unasked_end;  // memory of the next chunk
 } RayChunk;
 
 static inline float get_lane(const float16* vectors, uint i) { return ((const float*)vectors)[i]; }
@@ -34,6 +39,15 @@ static inline float3 get_vector(const float16 (*axes)[GROUPS], uint i) {
 }
 
 static inline uint get_octant(const RayChunk* c, uint i) { return ((const uint*)c->octant)[i]; }
+
+/// Asks for a part of the rays that the next work-item will load: a chunk fills a page, and processors do not foresee beyond
+/// that. Not for all at once, which would wait until a core's few places for memory on its way are free again.
+static inline void chunk_ask_ahead(RayChunk* c, uint bytes) {
+    global const uchar* from = c->unasked;
+    if (from >= c->unasked_end) return;
+    fetch_early(from, bytes);
+    c->unasked = from + bytes;
+}
 
 /// What ray i has found.
 static inline Hit chunk_hit(const RayChunk* c, uint i) {
@@ -70,27 +84,29 @@ static inline void prepare_slabs(RayChunk* c, uint group, uint axis) {
     c->octant[group] |= as_uint16(d) >> 31 << (OCTANT_SIGN + axis);
 }
 
-/// triangle_frame() of a group.
+/// triangle_frame() of a group that has its slab frame, whose reciprocal of the largest axis is the frame's too.
 static inline void prepare_triangle_frame(RayChunk* c, uint group) {
     const float16 x = c->direction[0][group], y = c->direction[1][group], z = c->direction[2][group];
     const int16 z_over_x = fabs(z) >= fabs(x), z_over_y = fabs(z) >= fabs(y);
     const int16 is_x = (fabs(x) > fabs(y)) & ~z_over_x, is_y = ~(fabs(x) > fabs(y)) & ~z_over_y;
-    c->octant[group] = as_uint16(select(select((int16)(2), (int16)(1), is_y), (int16)(0), is_x));
-    const float16 along = select(select(z, y, is_y), x, is_x);
+    c->octant[group] |= as_uint16(select(select((int16)(2), (int16)(1), is_y), (int16)(0), is_x));
+    const float16 inverse =
+        select(select(c->inverse[2][group], c->inverse[1][group], is_y), c->inverse[0][group], is_x);
     const float16 next = select(select(x, z, is_y), y, is_x);
     const float16 last = select(select(y, x, is_y), z, is_x);
-    const int16 swap = along < 0.0f;
-    c->shear[0][group] = select(next, last, swap) / along;
-    c->shear[1][group] = select(last, next, swap) / along;
-    c->shear[2][group] = 1.0f / along;
+    const int16 swap = inverse < 0.0f;
+    c->shear[0][group] = select(next, last, swap) * inverse;
+    c->shear[1][group] = select(last, next, swap) * inverse;
+    c->shear[2][group] = inverse;
 }
 
 /// slab_frame() and triangle_frame() of all rays.
 static inline void chunk_frames(RayChunk* c) {
     for (uint group = 0; group < GROUPS; ++group) {
-        prepare_triangle_frame(c, group);
+        c->octant[group] = (uint16)(0);
 #pragma unroll
         for (uint axis = 0; axis < 3; ++axis) prepare_slabs(c, group, axis);
+        prepare_triangle_frame(c, group);
     }
 }
 
@@ -126,6 +142,7 @@ static inline float16 repeat_first(const float16* vectors, uint group, uint firs
 static inline void chunk_part(RayChunk* part, const RayChunk* c, ulong rays) {
     const uint first = lowest_bit64(rays);
     part->rays = rays;
+    part->unasked = part->unasked_end = 0;
 #pragma unroll
     for (uint group = 0; group < GROUPS; ++group) {
         const int16 is_in = lanes_of_rays(rays, group);
@@ -188,8 +205,9 @@ static inline void chunk_load(RayChunk* c, global const void* records, uint stri
         c->best_v[group] = (float16)(0.0f);
         c->best_primitive[group] = (uint16)(NO_INDEX);
     }
-    // What the next work-item will load: a chunk fills a page, and processors do not foresee beyond that.
-    fetch_early(words + CHUNK * stride, CHUNK * stride * sizeof(float));
+    c->unasked = (global const uchar*)(words + CHUNK * stride);
+    c->unasked_end = (global const uchar*)(words + 2 * CHUNK * stride);
+    chunk_ask_ahead(c, ASKED_FIRST);
     chunk_frames(c);
 }
 

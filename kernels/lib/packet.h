@@ -249,6 +249,7 @@ static void traverse_packet(const Geometry* geometry, Packet* p, bool any_hit) {
     uint top = 1;
     Sharing sharing = {0, 0};
     while (top > 0) {
+        chunk_ask_ahead(&p->rays, ASKED_A_VISIT);
         const ulong item = stack[--top];
         const uint distance = (uint)(item >> 32), child = (uint)item;
         if (as_float(distance & ~(7u | ALL_GROUPS << ENTRY_GROUPS_SHIFT)) > p->farthest_of_all) continue;

@@ -257,6 +257,7 @@ static void stream_closest_hits(const Geometry* scene, RayChunk* c, ulong rays) 
             Stream* s = streams + active[i];
             Visit* visit = visits + active[i];
             count_visit(&sharing, visit->rays);
+            chunk_ask_ahead(c, ASKED_A_VISIT);
             stream_visit(s, c, &geometry, *visit, false, false);
             if (!stream_next(s, &memory, 0, visit)) active[i--] = active[--count];
         }

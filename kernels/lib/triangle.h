@@ -8,7 +8,8 @@
 
 #include "lib/slabs.h"
 
-/// The ray's frame: axis z is the largest of the direction's, x and y keep the handedness; shear maps the ray onto z.
+/// The ray's frame: axis z is the largest of the direction's, x and y keep the handedness; shear maps the ray onto z, and
+/// is the direction over that axis with two roundings: every triangle meets the same ray, so that nothing leaks.
 typedef struct {
     uint x, y, z;
     float origin_x, origin_y, origin_z;
@@ -44,9 +45,9 @@ static inline TriangleFrame triangle_frame(float3 origin, float3 direction) {
     f.origin_x = component(origin, f.x);
     f.origin_y = component(origin, f.y);
     f.origin_z = component(origin, f.z);
-    f.shear_x = component(direction, f.x) / along;
-    f.shear_y = component(direction, f.y) / along;
     f.shear_z = 1.0f / along;
+    f.shear_x = component(direction, f.x) * f.shear_z;
+    f.shear_y = component(direction, f.y) * f.shear_z;
     return f;
 }
 

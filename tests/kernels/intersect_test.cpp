@@ -22,7 +22,7 @@ double largest(const dvec3& v) {
     return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
-/// Woop's test: the vertices relative to the ray, sheared, have 4 roundings; the edge functions are differences of
+/// Woop's test: the vertices relative to the ray, sheared, have 5 roundings; the edge functions are differences of
 /// their products; the weights are quotients of those, and t the mean of the vertices' distances that they weigh.
 HitError triangle_error(const Scene& scene, const reference::Ray& ray, uint id) {
     dvec3 p[3];
@@ -35,7 +35,7 @@ HitError triangle_error(const Scene& scene, const reference::Ray& ray, uint id) 
     const double reach = std::max({largest(p[0]), largest(p[1]), largest(p[2])});
     double across = 0;  // largest distance of a vertex from the ray
     for (const dvec3& q : p) across = std::max(across, glm::length(glm::cross(q, d)) / along);
-    const double edge_error = 4 * across * (4 * ROUNDING * 2 * reach) + 3 * ROUNDING * across * across;
+    const double edge_error = 4 * across * (5 * ROUNDING * 2 * reach) + 3 * ROUNDING * across * across;
     const double weight_error = 4 * edge_error / det + 4 * ROUNDING;
     return {(6 * reach * weight_error + 8 * ROUNDING * reach) / along, weight_error};
 }
