@@ -14,6 +14,10 @@
 #define COHERENT_SPREAD 0.4f
 #define FEWEST_TOGETHER 24  // rays of a packet, and of those that meet a child: fewer go on as a stream
 
+// Such children that a stream begins with where any hit will do: with one it would wait for that one's memory. Closest hits
+// are looked for at once, since what they find may cull.
+#define HANDED_TOGETHER 4
+
 /// A block of triangles as all rays of a packet see it: corners along the axes of its triangle frame, from the origin of a
 /// pinhole's rays, and per axis of the world the planes through which rays enter each triangle's bounds.
 typedef struct {
@@ -248,13 +252,20 @@ static void traverse_packet(const Geometry* geometry, Packet* p, bool any_hit) {
     stack[0] = (ulong)(ALL_GROUPS << ENTRY_GROUPS_SHIFT) << 32;
     uint top = 1;
     Sharing sharing = {0, 0};
+    Visit handed[AHEAD_FOR_ANY];
+    uint count = 0;
     while (top > 0) {
         chunk_ask_ahead(&p->rays, ASKED_A_VISIT);
         const ulong item = stack[--top];
         const uint distance = (uint)(item >> 32), child = (uint)item;
         if (as_float(distance & ~(7u | ALL_GROUPS << ENTRY_GROUPS_SHIFT)) > p->farthest_of_all) continue;
         if (popcount(stack_rays[top]) < FEWEST_TOGETHER) {
-            if (stream_below(geometry, &p->rays, stack_rays[top], child, any_hit, &sharing)) update_farthest(p);
+            handed[count].child = child;
+            handed[count].rays = stack_rays[top];
+            count += 1;
+            if (count < (any_hit ? HANDED_TOGETHER : 1)) continue;
+            if (stream_below(geometry, &p->rays, handed, count, any_hit, &sharing)) update_farthest(p);
+            count = 0;
             if (!share_little(&sharing)) continue;
             fly_rays(geometry, &p->rays, p->rays.rays);
             return;
@@ -283,6 +294,7 @@ static void traverse_packet(const Geometry* geometry, Packet* p, bool any_hit) {
                                            : visit_triangles_groups(p, geometry->triangles + block, groups, any_hit);
         if (found) update_farthest(p);
     }
+    if (count > 0) stream_below(geometry, &p->rays, handed, count, any_hit, &sharing);
 }
 
 /// Whether those rays of a chunk that have a bit set, all of one octant, share so much of the hierarchy that they are better

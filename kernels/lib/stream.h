@@ -15,10 +15,10 @@
 
 #define STREAMS 8  // of a chunk: as many as combinations of signs
 
-// Between the choice of a child and the visit that pushes its children, as many others are made as are ahead, less one, and
-// each pushes the children of one node: so a level has at most eight nodes' on the stack, and all but the newest of them
-// seven each. With one ahead it is the stack of a ray alone.
-#define STREAM_STACK (AHEAD_FOR_ANY * STACK_SIZE)
+// Where this many entries are on the stack, no more than one visit is chosen ahead: once those that had been are made, each
+// of which may push the children of a node, the stack grows as that of a ray alone, by STACK_SIZE at most.
+#define STREAM_FULL 512
+#define STREAM_STACK (STREAM_FULL + BVH_WIDTH * AHEAD_FOR_ANY + STACK_SIZE)
 
 #define FEWEST_VISITS 128  // before it is judged how many rays share one
 
@@ -196,18 +196,27 @@ static inline void stream_begin(Stream* s, const RayChunk* c, ulong rays, Visit*
     s->stack = stack;
 }
 
-/// Goes on below a child with rays of one octant, from their best hits so far. Whether one of them has found something new.
-/// Closest hits may be left unfound if rays share_little(); not so any hits.
-static bool stream_below(const Geometry* scene, RayChunk* c, ulong rays, uint child, bool any_hit, Sharing* sharing) {
+/// Those rays of a search for any hits that are done.
+static inline ulong chunk_done(const RayChunk* c) {
+    ulong done = 0;
+#pragma unroll
+    for (uint group = 0; group < GROUPS; ++group) done |= (ulong)lane_mask16(c->best_t[group] < 0.0f) << GROUP * group;
+    return done;
+}
+
+/// Makes some visits and all below them, by rays of one octant, from their best hits so far. ahead: the visits, and room for
+/// AHEAD_FOR_ANY. Whether a ray has found something new. Closest hits may be left unfound if rays share_little(); not so
+/// any hits.
+static bool stream_below(const Geometry* scene, RayChunk* c, Visit* ahead, uint count, bool any_hit, Sharing* sharing) {
     const Geometry geometry = *scene;  // a copy that no store can change, for the compiler to keep in registers
     const ChildMemory memory = child_memory(scene);
     const uint most = any_hit ? AHEAD_FOR_ANY : AHEAD_FOR_CLOSEST;
     Visit stack[STREAM_STACK];
     Stream stream;
-    stream_begin(&stream, c, rays, stack);
-    Visit ahead[AHEAD_FOR_ANY] = {{child, rays}};  // a ring
-    uint first = 0, count = 1;
-    ulong found = 0;
+    stream_begin(&stream, c, ahead[0].rays, stack);
+    uint first = 0;  // of a ring
+    const ulong done = any_hit ? chunk_done(c) : 0;
+    ulong found = done;
     while (count > 0) {
         Visit visit = ahead[first % AHEAD_FOR_ANY];
         first += 1;
@@ -219,10 +228,11 @@ static bool stream_below(const Geometry* scene, RayChunk* c, ulong rays, uint ch
             if (share_little(sharing)) break;
         }
         if (visit.rays != 0) found |= stream_visit(&stream, c, &geometry, visit, true, any_hit);
-        while (count < most && stream_next(&stream, &memory, any_hit ? found : 0, ahead + (first + count) % AHEAD_FOR_ANY))
+        while (count < (stream.top < STREAM_FULL ? most : 1) &&
+               stream_next(&stream, &memory, any_hit ? found : 0, ahead + (first + count) % AHEAD_FOR_ANY))
             count += 1;
     }
-    return found != 0;
+    return found != done;
 }
 
 /// Finds whether some rays of a chunk hit anything.
@@ -230,7 +240,8 @@ static void stream_any_hits(const Geometry* geometry, RayChunk* c, ulong rays) {
     Sharing sharing = {0, 0};
     while (rays != 0) {
         const ulong members = rays & rays_of_octant(c, get_octant(c, lowest_bit64(rays)));
-        stream_below(geometry, c, members, ROOT, true, &sharing);
+        Visit all[AHEAD_FOR_ANY] = {{ROOT, members}};
+        stream_below(geometry, c, all, 1, true, &sharing);
         rays &= ~members;
     }
 }
