@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::size_t PARALLEL_SIZE = 65536;  // shorter ranges are not worth sharing out
 constexpr std::size_t CHUNK_SIZE = 16384;     // primitives a task handles
+constexpr std::size_t TURNS_SIZE = 256;       // from here on, several sets of bins are worth adding up
 
 /// Minima, maxima and counts: the same whatever the order of additions, and so for any number of threads.
 class Bins {
@@ -23,15 +24,31 @@ class Bins {
         std::memset(count_, 0, sizeof count_);
     }
 
-    void add(std::span<const PrimitiveRef> refs, const BinGrid& grid) {
-        for (const PrimitiveRef& ref : refs) {
-            const Int4 bins = grid.bins(ref);
-            const Box bounds = ref.box();
-            for (int axis = 0; axis < 3; ++axis) {
-                axis_[axis].box[bins[axis]].add(bounds);
-                ++count_[bins[axis]][axis];
-            }
+    void add(const PrimitiveRef& ref, const BinGrid& grid) {
+        const Int4 bins = grid.bins(ref);
+        const Box bounds = ref.box();
+        for (int axis = 0; axis < 3; ++axis) {
+            axis_[axis].box[bins[axis]].add(bounds);
+            ++count_[bins[axis]][axis];
         }
+    }
+
+    void add(std::span<const PrimitiveRef> refs, const BinGrid& grid) {
+        std::size_t i = 0;
+        if (refs.size() >= TURNS_SIZE) {
+            // Neighbours often fall into one bin, which cannot be read until it is written: so they take turns at four.
+            Bins second(used_), third(used_), fourth(used_);
+            for (; i + 4 <= refs.size(); i += 4) {
+                add(refs[i], grid);
+                second.add(refs[i + 1], grid);
+                third.add(refs[i + 2], grid);
+                fourth.add(refs[i + 3], grid);
+            }
+            add(second);
+            add(third);
+            add(fourth);
+        }
+        for (; i < refs.size(); ++i) add(refs[i], grid);
     }
 
     void add(const Bins& other) {
