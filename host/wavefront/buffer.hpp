@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "device/device.hpp"
-#include "device/huge_pages.hpp"
 
 namespace raymill {
 
@@ -16,9 +15,7 @@ class Buffer {
   public:
     Buffer() = default;
     Buffer(const Device& device, std::size_t size)
-        : size_(size), memory_(device.context, CL_MEM_READ_WRITE, std::max<std::size_t>(size, 1) * sizeof(T)) {
-        ask_for_huge_pages(device, memory_, size * sizeof(T));
-    }
+        : size_(size), memory_(device.context, CL_MEM_READ_WRITE, std::max<std::size_t>(size, 1) * sizeof(T)) {}
     Buffer(const Device& device, std::span<const T> values) : Buffer(device, values.size()) { write(device, values); }
 
     /// The elements of `values`, which must not be empty and must outlive the buffer: a device that is this processor

@@ -1,5 +1,6 @@
 #include "wavefront/device_scene.hpp"
 
+#include "device/huge_pages.hpp"
 #include "wavefront/records.hpp"
 
 namespace raymill {
@@ -28,19 +29,22 @@ Buffer<float> upload_texels(const Device& device, const Scene& scene) {
     return texels;
 }
 
-/// Of any contiguous array.
+/// Of any contiguous array. Rays read scenes at random; queues, which they read in order, gain nothing by huge pages.
 template <class Array>
 auto upload(const Device& device, const Array& values) {
     using T = typename Array::value_type;
-    return Buffer<T>(device, std::span<const T>(values));
+    Buffer<T> buffer(device, values.size());
+    ask_for_huge_pages(device, buffer.memory(), values.size() * sizeof(T));
+    buffer.write(device, values);
+    return buffer;
 }
 
 }  // namespace
 
 DeviceScene::DeviceScene(const Device& device, const Scene& scene, const Bvh& bvh, const FilmPlanes& planes)
-    : nodes(device, std::span<const BvhNode>(bvh.nodes)),
-      triangle_blocks(device, std::span<const TriangleBlock>(bvh.triangle_blocks)),
-      sphere_blocks(device, std::span<const SphereBlock>(bvh.sphere_blocks)),
+    : nodes(upload(device, bvh.nodes)),
+      triangle_blocks(upload(device, bvh.triangle_blocks)),
+      sphere_blocks(upload(device, bvh.sphere_blocks)),
       vertices(upload(device, scene.vertices)),
       triangles(upload(device, scene.triangles)),
       spheres(upload(device, scene.spheres)),
