@@ -9,9 +9,7 @@
 #include <utility>
 #include <vector>
 
-#ifdef __linux__
-#include <sys/mman.h>
-#endif
+#include "common/huge_pages.hpp"
 
 namespace raymill::bvh {
 
@@ -28,15 +26,10 @@ class LargeAllocator {
     T* allocate(std::size_t count) {
         const std::size_t bytes = count * sizeof(T);
         void* memory = ::operator new(bytes, alignment(bytes));
-#ifdef __linux__
-        // A wish, and no error where it is not granted.
-        if (bytes >= HUGE_PAGE) madvise(memory, bytes, MADV_HUGEPAGE);
-#endif
+        ask_for_huge_pages(memory, bytes);
         return static_cast<T*>(memory);
     }
-    void deallocate(T* memory, std::size_t count) {
-        ::operator delete(memory, alignment(count * sizeof(T)));
-    }
+    void deallocate(T* memory, std::size_t count) { ::operator delete(memory, alignment(count * sizeof(T))); }
 
     template <typename U>
     void construct(U* place) {
@@ -50,8 +43,6 @@ class LargeAllocator {
     bool operator==(const LargeAllocator&) const = default;
 
   private:
-    static constexpr std::size_t HUGE_PAGE = std::size_t{1} << 21;
-
     static std::align_val_t alignment(std::size_t bytes) {
         return std::align_val_t{bytes >= HUGE_PAGE ? HUGE_PAGE : std::size_t{64}};
     }

@@ -63,9 +63,10 @@ std::vector<Crossing> triangle_crossing(const Scene& scene, const reference::Ray
     c.v = area[2] / total;
     c.margin = std::min({area[0] / total, c.u, c.v});
     const double per_along = s.size_z / std::abs(s.along);
-    // The kernel drops hits nearer than its own bound (triangle.h), which has 6 roundings where most triangles have 9.
-    const double distance_error = rounding * std::max(9 * size, 6 * std::abs(total)) + area_error;
-    c.t_error = 3 * distance_error * per_along * inverse + 2 * rounding * std::abs(c.t);
+    c.t_error = 3 * (9 * rounding * size + area_error) * per_along * inverse + 2 * rounding * std::abs(c.t);
+    // The kernel leaves out hits nearer than its own bound (triangle.h), of what it has computed so far.
+    const double x = s.size_x + x_error, y = s.size_y + y_error, least = std::abs(total) - 3 * area_error;
+    c.left_out = 3 * per_along * rounding * (2 * (12 * x * y + 5 * s.size_z * (x + y)) / least + 6);
     // Of the quotient: the numerator's error, three times that in the denominator, and two roundings.
     c.weight_error = area_error * inverse * (1 + 3 * std::max(1.0, size * inverse)) + 5 * rounding * size * inverse;
     // The kernel decides by the sign of each area, which is exact where the rounded one is zero.
@@ -125,7 +126,8 @@ std::vector<Crossing> plane_crossing(const reference::Ray& ray, const Plane& pla
 
 double Crossing::clarity() const {
     const double by_margin = margin_error > 0 ? std::abs(margin) / margin_error : INFINITY;
-    const double by_distance = t_error > 0 ? std::abs(t) / t_error : INFINITY;
+    const double near = t_error + (t > 0 ? left_out : 0);
+    const double by_distance = near > 0 ? std::abs(t) / near : INFINITY;
     // Outside either of them is enough to be no hit; inside both are needed to be one.
     if (margin < 0 && t < 0) return std::max(by_margin, by_distance);
     if (margin < 0) return by_margin;

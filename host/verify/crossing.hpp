@@ -14,13 +14,14 @@ namespace raymill::verify {
 struct Crossing {
     double t = 0, u = 0, v = 0;
     double t_error = 0;       // bound on the kernel's error of t
+    double left_out = 0;      // how near the origin the kernel may leave out what it has found
     double weight_error = 0;  // of u and v
     double margin = 0;
     double margin_error = 0;
 
     /// How clear it is that the ray does or does not meet the primitive in front of it: at least 1 is certain.
     double clarity() const;
-    bool certain() const { return margin > margin_error && t > t_error; }
+    bool certain() const { return margin > margin_error && t > t_error + left_out; }
     bool possible() const { return margin >= -margin_error && t >= -t_error; }
 };
 

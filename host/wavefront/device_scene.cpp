@@ -1,11 +1,24 @@
 #include "wavefront/device_scene.hpp"
 
-#include "device/huge_pages.hpp"
+#include "common/huge_pages.hpp"
 #include "wavefront/records.hpp"
 
 namespace raymill {
 
 namespace {
+
+/// Room in huge pages where the device is this processor, since rays read scenes at random; queues are read in order.
+template <class T>
+Buffer<T> scene_buffer(const Device& device, std::size_t size) {
+    Buffer<T> buffer(device, size);
+    const std::size_t bytes = size * sizeof(T);
+    if (bytes < 2 * HUGE_PAGE || device.info.type != "CPU") return buffer;
+    // Such a device maps a buffer where it is.
+    void* mapped = device.queue.enqueueMapBuffer(buffer.memory(), CL_TRUE, CL_MAP_WRITE_INVALIDATE_REGION, 0, bytes);
+    ask_for_huge_pages(mapped, bytes);
+    device.queue.enqueueUnmapMemObject(buffer.memory(), mapped);
+    return buffer;
+}
 
 std::vector<Texture> texture_records(const Scene& scene) {
     std::vector<Texture> records;
@@ -20,7 +33,7 @@ std::vector<Texture> texture_records(const Scene& scene) {
 Buffer<float> upload_texels(const Device& device, const Scene& scene) {
     std::size_t count = 0;
     for (const TextureImage& image : scene.images) count += image.texels.size();
-    Buffer<float> texels(device, 3 * count);
+    Buffer<float> texels = scene_buffer<float>(device, 3 * count);
     std::size_t first = 0;
     for (const TextureImage& image : scene.images) {
         texels.write(device, {&image.texels.data()->x, 3 * image.texels.size()}, first);
@@ -29,12 +42,11 @@ Buffer<float> upload_texels(const Device& device, const Scene& scene) {
     return texels;
 }
 
-/// Of any contiguous array. Rays read scenes at random; queues, which they read in order, gain nothing by huge pages.
+/// Of any contiguous array.
 template <class Array>
 auto upload(const Device& device, const Array& values) {
     using T = typename Array::value_type;
-    Buffer<T> buffer(device, values.size());
-    ask_for_huge_pages(device, buffer.memory(), values.size() * sizeof(T));
+    Buffer<T> buffer = scene_buffer<T>(device, values.size());
     buffer.write(device, values);
     return buffer;
 }

@@ -133,6 +133,14 @@ static inline ulong rays_of_signs(const RayChunk* c, uint octant) {
     return rays & c->rays;
 }
 
+/// Those rays of a search for any hits that are done.
+static inline ulong chunk_done(const RayChunk* c) {
+    ulong done = 0;
+#pragma unroll
+    for (uint group = 0; group < GROUPS; ++group) done |= (ulong)lane_mask16(c->best_t[group] < 0.0f) << GROUP * group;
+    return done;
+}
+
 /// The first ray in the lanes that are left out.
 static inline float16 repeat_first(const float16* vectors, uint group, uint first, int16 is_in) {
     return select((float16)(get_lane(vectors, first)), vectors[group], is_in);
@@ -142,7 +150,8 @@ static inline float16 repeat_first(const float16* vectors, uint group, uint firs
 static inline void chunk_part(RayChunk* part, const RayChunk* c, ulong rays) {
     const uint first = lowest_bit64(rays);
     part->rays = rays;
-    part->unasked = part->unasked_end = 0;
+    part->unasked = c->unasked;
+    part->unasked_end = c->unasked_end;
 #pragma unroll
     for (uint group = 0; group < GROUPS; ++group) {
         const int16 is_in = lanes_of_rays(rays, group);
@@ -163,8 +172,9 @@ static inline void chunk_part(RayChunk* part, const RayChunk* c, ulong rays) {
     }
 }
 
-/// Takes over what a part has found.
+/// Takes over what a part has found, and asked for.
 static inline void chunk_merge(RayChunk* c, const RayChunk* part) {
+    c->unasked = part->unasked;
 #pragma unroll
     for (uint group = 0; group < GROUPS; ++group) {
         const int16 is_in = lanes_of_rays(part->rays, group);

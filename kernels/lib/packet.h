@@ -266,7 +266,7 @@ static void traverse_packet(const Geometry* geometry, Packet* p, bool any_hit) {
             if (count < (any_hit ? HANDED_TOGETHER : 1)) continue;
             if (stream_below(geometry, &p->rays, handed, count, any_hit, &sharing)) update_farthest(p);
             count = 0;
-            if (!share_little(&sharing)) continue;
+            if (any_hit || !share_little(&sharing)) continue;
             fly_rays(geometry, &p->rays, p->rays.rays);
             return;
         }

@@ -32,7 +32,8 @@ static inline SlabFrame slab_frame(float3 origin, float3 direction) {
 }
 
 /// Whether a ray that enters and leaves there meets the box: each distance has 2 roundings, and what lies in the box may
-/// have been found off it by 4 roundings of the way there.
+/// have been found off it by 4 roundings of the way there, beside that of the reciprocal, which the shear and the slabs
+/// share.
 static inline int8 slabs_overlap(float8 enter, float8 leave) { return enter <= leave * (1.0f + 8.0f * ROUNDING); }
 
 #endif

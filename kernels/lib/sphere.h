@@ -16,7 +16,7 @@ static inline void clip_axis(float8 center, float8 radius, float inverse, float 
 
 /// The next hits after `after` in the order of distance and id: distances by lane, and the lanes that hit up to t_max.
 /// A ray must meet a sphere's own bounds, and meets it no earlier: else a box might cull what rounding puts beside it.
-/// Inline for the reason that intersect_triangles() is.
+/// Inline since frames are written in words and read as vectors (triangle.h).
 static inline __attribute__((always_inline)) uint intersect_spheres(global const SphereBlock* block,
                                                                     const SlabFrame* slabs, float3 origin,
                                                                     float3 direction, Hit after, float t_max,

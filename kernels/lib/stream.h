@@ -11,7 +11,7 @@
 // Visits whose memory is asked for before their turn. Closest hits lose by visits chosen early what hits found meanwhile would
 // have culled; of any hits, no order is better than another.
 #define AHEAD_FOR_CLOSEST 2
-#define AHEAD_FOR_ANY 8  // a power of two, and no less than the other
+#define AHEAD_FOR_ANY 8  // a power of two, and no less than the other, nor than what a stream begins with (packet.h)
 
 #define STREAMS 8  // of a chunk: as many as combinations of signs
 
@@ -196,14 +196,6 @@ static inline void stream_begin(Stream* s, const RayChunk* c, ulong rays, Visit*
     s->stack = stack;
 }
 
-/// Those rays of a search for any hits that are done.
-static inline ulong chunk_done(const RayChunk* c) {
-    ulong done = 0;
-#pragma unroll
-    for (uint group = 0; group < GROUPS; ++group) done |= (ulong)lane_mask16(c->best_t[group] < 0.0f) << GROUP * group;
-    return done;
-}
-
 /// Makes some visits and all below them, by rays of one octant, from their best hits so far. ahead: the visits, and room for
 /// AHEAD_FOR_ANY. Whether a ray has found something new. Closest hits may be left unfound if rays share_little(); not so
 /// any hits.
@@ -227,6 +219,7 @@ static bool stream_below(const Geometry* scene, RayChunk* c, Visit* ahead, uint 
             count_visit(sharing, visit.rays);
             if (share_little(sharing)) break;
         }
+        chunk_ask_ahead(c, ASKED_A_VISIT);
         if (visit.rays != 0) found |= stream_visit(&stream, c, &geometry, visit, true, any_hit);
         while (count < (stream.top < STREAM_FULL ? most : 1) &&
                stream_next(&stream, &memory, any_hit ? found : 0, ahead + (first + count) % AHEAD_FOR_ANY))

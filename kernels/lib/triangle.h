@@ -2,7 +2,7 @@
 // Source: Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013; the bound on t follows Pharr, Jakob,
 // Humphreys, Physically Based Rendering 4e, section 6.8.7.
 // Deviations: where an edge function rounds to zero its exact sign decides (Woop falls back to double), and a ray exactly
-// on an edge belongs to one of its two triangles by the top-left rule of rasterisers.
+// on an edge belongs to one of its two triangles by the top-left rule of rasterisers; the shear is a product.
 #ifndef RAYMILL_TRIANGLE_H
 #define RAYMILL_TRIANGLE_H
 
