@@ -20,7 +20,7 @@ struct Variant {
 /// What building a hierarchy took.
 struct Build {
     double seconds = 0;     // wall clock
-    std::size_t bytes = 0;  // of the hierarchy and its copies of the primitives
+    std::size_t bytes = 0;  // of the hierarchy and of the primitives that rays read with it
 };
 
 }  // namespace raymill::bench
