@@ -4,9 +4,10 @@
 
 #include "lib/sampling.h"
 
-/// A place in the order of camera samples: tiles of TILE x TILE pixels row by row, in a tile all pixels of one sample
-/// after the other, so that 64 rays in a row are neighbours. In a whole tile the pixels come in Z-order, so that sixteen
-/// rays are. Tiles at the right and bottom edge are smaller, and go row by row; none is padded.
+/// A place in the order of camera samples: whole tiles of TILE x TILE pixels row by row, then those that are left at the
+/// right edge from top to bottom, then those at the bottom from left to right, as wide and high as there is room; none is
+/// padded. In a tile all pixels of one sample come after the other, in a whole one in Z-order. So 64 rays in a row are
+/// neighbours, and sixteen are closer ones; and narrow tiles do not put the whole ones out of step with the chunks.
 typedef struct {
     uint tile_x, tile_y;  // first pixel of the tile, in the rendered window
     uint columns, rows;   // of the tile
@@ -14,23 +15,65 @@ typedef struct {
     uint row, column;     // in the tile
 } CameraCursor;
 
-/// Camera sample number `index` of the window.
+static inline void set_tile(CameraCursor* c, constant CameraRecord* camera, uint x, uint y) {
+    c->tile_x = x;
+    c->tile_y = y;
+    c->columns = min((uint)TILE, camera->crop[2] - x);
+    c->rows = min((uint)TILE, camera->crop[3] - y);
+}
+
+/// Quotient, which must be below 2^32, and remainder.
+static inline uint divide(ulong number, uint by, uint* remainder) {
+    const uint quotient = (uint)(number / by);
+    *remainder = (uint)(number - (ulong)quotient * by);
+    return quotient;
+}
+
+/// Camera sample number `index` of the window, which must have it.
 static inline CameraCursor camera_cursor(ulong index, constant CameraRecord* camera) {
     const uint width = camera->crop[2], height = camera->crop[3], spp = camera->spp;
-    const ulong row_samples = (ulong)width * TILE * spp;
+    const uint across = width / TILE, down = height / TILE;            // whole tiles
+    const uint columns = width % TILE, rows = height % TILE;           // what is left
+    const ulong right = (ulong)(across * TILE) * (down * TILE) * spp;  // the first sample at the right edge
+    const ulong bottom = right + (ulong)columns * (down * TILE) * spp;
     CameraCursor c;
-    c.tile_y = (uint)(index / row_samples) * TILE;
-    c.rows = min((uint)TILE, height - c.tile_y);
-    const ulong in_row = index - (ulong)c.tile_y * width * spp;  // a row of tiles may hold more than 2^32
-    const uint full_tile = TILE * c.rows * spp;
-    c.tile_x = (uint)(in_row / full_tile) * TILE;
-    c.columns = min((uint)TILE, width - c.tile_x);
-    const uint in_tile = (uint)(in_row - (ulong)(c.tile_x / TILE) * full_tile);
-    c.sample = in_tile / (c.columns * c.rows);
-    const uint in_sample = in_tile - c.sample * c.columns * c.rows;
-    c.row = in_sample / c.columns;
-    c.column = in_sample - c.row * c.columns;
+    uint in_tile, in_sample;
+    if (index < right) {
+        const uint tile = divide(index, TILE * TILE * spp, &in_tile);
+        set_tile(&c, camera, tile % across * TILE, tile / across * TILE);
+    } else if (index < bottom) {
+        const uint tile = divide(index - right, columns * TILE * spp, &in_tile);
+        set_tile(&c, camera, across * TILE, tile * TILE);
+    } else {
+        const uint tile = divide(index - bottom, TILE * rows * spp, &in_tile);
+        set_tile(&c, camera, tile * TILE, down * TILE);
+    }
+    c.sample = divide(in_tile, c.columns * c.rows, &in_sample);
+    c.row = divide(in_sample, c.columns, &c.column);
     return c;
+}
+
+static inline void next_tile(CameraCursor* c, constant CameraRecord* camera) {
+    const uint width = camera->crop[2], height = camera->crop[3];
+    const uint right = width - width % TILE, bottom = height - height % TILE;  // where whole tiles end
+    uint x = c->tile_x, y = c->tile_y;
+    if (y >= bottom) {
+        x += TILE;
+    } else if (x >= right) {
+        y += TILE;
+        if (y >= bottom) x = 0;
+    } else {
+        x += TILE;
+        if (x >= right) {
+            x = 0;
+            y += TILE;
+        }
+        if (y >= bottom && right < width) {
+            x = right;
+            y = 0;
+        }
+    }
+    set_tile(c, camera, x, y);
 }
 
 /// The next sample. Past the last one it means nothing.
@@ -41,13 +84,7 @@ static inline void camera_step(CameraCursor* c, constant CameraRecord* camera) {
     c->row = 0;
     if (++c->sample < camera->spp) return;
     c->sample = 0;
-    c->tile_x += TILE;
-    if (c->tile_x >= camera->crop[2]) {
-        c->tile_x = 0;
-        c->tile_y += TILE;
-        c->rows = min((uint)TILE, camera->crop[3] - c->tile_y);
-    }
-    c->columns = min((uint)TILE, camera->crop[2] - c->tile_x);
+    next_tile(c, camera);
 }
 
 /// Sixteen camera samples.

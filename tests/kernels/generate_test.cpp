@@ -28,6 +28,8 @@ const View views[] = {
     {"pinhole", Projection::perspective, 0, 64, 48, 1, {}},
     {"pinhole_of_odd_size", Projection::perspective, 0, 37, 21, 4, {}},
     {"one_pixel", Projection::perspective, 0, 1, 1, 7, {}},
+    {"one_row", Projection::perspective, 0, 19, 1, 4, {}},
+    {"whole_rows_of_tiles", Projection::perspective, 0, 37, 24, 1, {}},
     {"one_column", Projection::perspective, 0, 1, 19, 4, {}},
     {"thin_lens", Projection::perspective, 0.3, 37, 21, 7, {}},
     {"thin_lens_of_one_sample", Projection::perspective, 0.3, 33, 9, 1, {}},
@@ -70,21 +72,28 @@ void add_quarters(int left, int top, int edge, uint sample, std::vector<Sample>&
         for (const int x : {left, left + half}) add_quarters(x, y, half, sample, order);
 }
 
-/// The order that the kernel documents, spelt out: tiles row by row, samples in a tile, pixels of a sample.
+/// The pixels of one tile: samples after each other, pixels of a sample.
+void add_tile(int left, int top, int width, int height, int spp, std::vector<Sample>& order) {
+    for (int sample = 0; sample < spp; ++sample) {
+        if (width == TILE && height == TILE) {
+            add_quarters(left, top, TILE, static_cast<uint>(sample), order);
+            continue;
+        }
+        for (int y = top; y < top + height; ++y)
+            for (int x = left; x < left + width; ++x) order.push_back({x, y, static_cast<uint>(sample)});
+    }
+}
+
+/// The order that the kernel documents, spelt out: whole tiles row by row, what is left at the right, then at the
+/// bottom.
 std::vector<Sample> tile_order(const PixelWindow& window, int spp) {
     std::vector<Sample> order;
-    for (int top = 0; top < window.height; top += TILE)
-        for (int left = 0; left < window.width; left += TILE)
-            for (int sample = 0; sample < spp; ++sample) {
-                const int width = std::min<int>(TILE, window.width - left);
-                const int height = std::min<int>(TILE, window.height - top);
-                if (width == TILE && height == TILE) {
-                    add_quarters(left, top, TILE, static_cast<uint>(sample), order);
-                    continue;
-                }
-                for (int y = top; y < top + height; ++y)
-                    for (int x = left; x < left + width; ++x) order.push_back({x, y, static_cast<uint>(sample)});
-            }
+    const int right = window.width / TILE * TILE, bottom = window.height / TILE * TILE;
+    for (int y = 0; y < bottom; y += TILE)
+        for (int x = 0; x < right; x += TILE) add_tile(x, y, TILE, TILE, spp, order);
+    for (int y = 0; y < bottom; y += TILE) add_tile(right, y, window.width - right, TILE, spp, order);
+    for (int x = 0; x < window.width; x += TILE)
+        add_tile(x, bottom, std::min<int>(TILE, window.width - x), window.height - bottom, spp, order);
     return order;
 }
 
@@ -165,8 +174,9 @@ TEST(GenerateOfManySamples, the_last_of_more_than_2_to_the_32_samples_is_the_las
         EXPECT_EQ(last.pixel, pixels - 1);
         EXPECT_EQ(last.sample, static_cast<uint>(size.spp - 1));
         const auto width = static_cast<uint>(size.width);
-        const Ray corner = rig.generate(std::uint64_t{TILE} * width * static_cast<uint>(size.spp) - 1, 1)[0];
-        EXPECT_EQ(corner.pixel, TILE * width - 1);
+        const uint whole_width = width / TILE * TILE;
+        const Ray corner = rig.generate(std::uint64_t{TILE} * whole_width * static_cast<uint>(size.spp) - 1, 1)[0];
+        EXPECT_EQ(corner.pixel, (TILE - 1) * width + whole_width - 1);
     }
 }
 
