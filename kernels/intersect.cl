@@ -12,7 +12,7 @@
 COMPILED_ONCE static uint add_background(const Film* film, global const Texture* textures, global const float* texels,
                                   const HitLanes* rays) {
     const Lanes3 sky = environment_radiance(textures, texels, film->constants, rays->direction);
-    Terms terms = {.count = rays->count, .second = {{(float16)(0.0f)}}};
+    Terms terms = {.lanes = first_lanes(rays->count), .second = {{(float16)(0.0f)}}};
     vstore16(rays->pixel, 0, terms.pixel);
     vstore16(rays->route, 0, terms.route);
     terms.first = rows_of(lanes_mul(rays->throughput, sky), (float16)(0.0f));

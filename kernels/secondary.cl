@@ -18,7 +18,7 @@ static inline void spawn(const World* world, const HitLanes* hits, const Surface
                          Lanes3 direction, float side, uint branch, ChildLanes* c) {
     const Lanes3 throughput = lanes_scale(weight, share);
     const int16 counts = lanes_max(throughput) >= world->constants->min_weight;
-    c->mask = lane_mask16(counts & lanes_any(throughput)) & ((1u << hits->count) - 1u);
+    c->mask = lane_mask16(counts & lanes_any(throughput)) & first_lanes(hits->count);
     if (c->mask == 0) return;
     c->origin = rows_of(leave_surfaces(world, s, side), as_float16(hits->pixel));
     c->direction = rows_of(direction, as_float16(hits->sample));

@@ -11,7 +11,7 @@
 /// Ambient light and emission.
 COMPILED_ONCE static uint add_local_light(const Film* film, const World* world, const Shading* s) {
     Terms terms;
-    terms.count = s->hits.count;
+    terms.lanes = first_lanes(s->hits.count);
     vstore16(s->hits.pixel, 0, terms.pixel);
     vstore16(s->hits.route, 0, terms.route);
     terms.first = rows_of(ambient_radiance(world, s), (float16)(0.0f));

@@ -7,6 +7,31 @@
 #include "lib/trace.h"
 #include "lib/transmittance.h"
 
+/// The terms of up to sixteen rays in a row.
+static inline void load_terms(global const ShadowRay* rays, uint count, Terms* terms) {
+    terms->lanes = first_lanes(count);
+    terms->first = load_rows(rays->diffuse, WORDS(ShadowRay), count);
+    terms->second = load_rows(rays->specular, WORDS(ShadowRay), count);
+    for (uint lane = 0; lane < count; ++lane) {
+        terms->pixel[lane] = rays[lane].pixel;
+        terms->route[lane] = rays[lane].route;
+    }
+}
+
+/// What is left of a ray's light, in the way of which a primitive stands.
+static inline float3 light_left(const Geometry* geometry, const World* world, global const ShadowRay* ray, uint blocker) {
+    const float3 left = filter_of(world, blocker);
+    if (!any(left != 0.0f)) return left;
+    // Another surface on the way may block what this one lets through.
+    return transmittance(geometry, world, load3(ray->origin), load3(ray->direction), ray->t_max);
+}
+
+/// The shadow plane holds what is left of the light where the camera looks.
+static inline uint add_shadow(const Film* film, global const ShadowRay* ray, float3 left) {
+    if (ray->route != ROUTE_CAMERA || !film_keeps(film, FILM_SHADOW)) return 0;
+    return film_add(film, FILM_SHADOW, ray->pixel, (float4)(left, 1.0f));
+}
+
 /// One work-item a segment, or one ray where rays are traced alone.
 kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shadow_counts, uint segment_count,
                    global const BvhNode* nodes, global const TriangleBlock* triangle_blocks,
@@ -24,30 +49,31 @@ kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shado
     global const ShadowRay* rays = shadow_rays + segment * CHUNK + first;
     const uint count = min((uint)RAYS_A_WORK_ITEM, shadow_counts[segment] - first);
     uint blockers[RAYS_A_WORK_ITEM];
-    const bool all_clear = constants->shadows == SHADOWS_NONE;
-    if (!all_clear) find_blockers(&geometry, rays, count, blockers);
+    ulong in_the_way = 0;
+    if (constants->shadows != SHADOWS_NONE) in_the_way = find_blockers(&geometry, rays, count, blockers);
     uint blocked = 0, atomics = 0;
-    Terms terms = {.count = 0};
-    for (uint i = 0; i < count; ++i) {
-        global const ShadowRay* ray = rays + i;
-        float3 left = (float3)(1.0f);
-        if (!all_clear && blockers[i] != NO_INDEX) {
-            left = filter_of(&world, blockers[i]);
-            // Another surface on the way may block what this one lets through.
-            if (any(left != 0.0f))
-                left = transmittance(&geometry, &world, load3(ray->origin), load3(ray->direction), ray->t_max);
+    for (uint begin = 0; begin < count; begin += LANES) {
+        global const ShadowRay* some = rays + begin;
+        Terms terms;
+        load_terms(some, min((uint)LANES, count - begin), &terms);
+        const uint lanes = terms.lanes, hindered = (uint)(in_the_way >> begin) & lanes;
+        for (uint rest = hindered; rest != 0; rest &= rest - 1) {
+            const uint lane = lowest_bit(rest);
+            const float3 left = light_left(&geometry, &world, some + lane, blockers[begin + lane]);
+            atomics += add_shadow(&film, some + lane, left);
+            if (any(left != 0.0f)) {
+                ((float4*)&terms.first)[lane] *= (float4)(left, 0.0f);
+                ((float4*)&terms.second)[lane] *= (float4)(left, 0.0f);
+            } else {
+                terms.lanes &= ~(rest & -rest);
+                ++blocked;
+            }
         }
-        if (ray->route == ROUTE_CAMERA && film_keeps(&film, FILM_SHADOW)) {
-            atomics += film_add(&film, FILM_SHADOW, ray->pixel, (float4)(left, 1.0f));
-        }
-        if (any(left != 0.0f)) {
-            terms_put(&terms, ray->pixel, ray->route, left * load3(ray->diffuse), left * load3(ray->specular));
-            if (terms.count == LANES) atomics += film_add_terms(&film, FILM_DIFFUSE, FILM_SPECULAR, &terms);
-        } else {
-            ++blocked;
-        }
+        if (film_keeps(&film, FILM_SHADOW))
+            for (uint rest = lanes & ~hindered; rest != 0; rest &= rest - 1)
+                atomics += add_shadow(&film, some + lowest_bit(rest), (float3)(1.0f));
+        atomics += film_add_terms(&film, FILM_DIFFUSE, FILM_SPECULAR, &terms);
     }
-    atomics += film_add_terms(&film, FILM_DIFFUSE, FILM_SPECULAR, &terms);
     atomics += film_count(&counters->shadow_traced, count);
     atomics += film_count(&counters->shadow_blocked, blocked);
     film_count_atomics(&film, atomics);

@@ -30,7 +30,7 @@ CameraBounds camera_bounds(const Scene& scene) {
     const double on_film = 10 * rounding * (1 + film);
     // lib/math.h: a point of the unit disk errs by less than 1e-6; its axes and scale by six roundings.
     const double lens = camera.aperture / 2 * (1e-6 + 8 * rounding);
-    CameraBounds b{2 * rounding * (eye + film) + lens, on_film + 4 * rounding};
+    CameraBounds b{2 * rounding * (eye + film) + lens, on_film + 5 * rounding};
     if (orthographic) b.origin += on_film;
     if (camera.aperture > 0) {
         const double focus = camera.focus > 0 ? camera.focus : glm::length(camera.look_at - camera.eye);

@@ -57,7 +57,7 @@ Aim aim_of(const Truth& truth, const HitContext& context, const LightBounds& lig
     // The kernel aims from where the ray starts, off the surface; the reference from the surface itself.
     const double moved = diagonal * aim.origin_error;
     aim.direction_error =
-        (light.direction * light.sample.distance + light.distance + moved) / aim.distance + 4 * rounding;
+        (light.direction * light.sample.distance + light.distance + moved) / aim.distance + 5 * rounding;
     aim.distance_error = light.distance + light.direction * light.sample.distance + moved + 4 * rounding * aim.distance;
     return aim;
 }

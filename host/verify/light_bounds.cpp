@@ -166,7 +166,7 @@ LightBounds light_bounds(const Scene& scene, const reference::Tracer& tracer, co
     LightBounds b;
     b.sample = seen_from(p);
     const OwnError own = std::visit([&](const auto& light) { return own_error(light, b.sample); }, source.light);
-    b.direction = own.direction + 4 * rounding;
+    b.direction = own.direction + 5 * rounding;
     b.distance = own.distance;
     b.incoming = own.incoming / static_cast<double>(source.samples) + 12 * rounding * b.sample.incoming;
     if (!(b.sample.distance < INFINITY)) return b;

@@ -33,7 +33,7 @@ double refracted_error(const Interface& i, const dvec3& refracted) {
         const std::optional<dvec3> moved = reference::refract(i.d, n, eta);
         return moved ? glm::length(*moved - refracted) : 0.0;
     };
-    double error = 8 * rounding;
+    double error = 9 * rounding;
     for (int axis = 0; axis < 3; ++axis) {
         dvec3 shift(0);
         shift[axis] = i.n_error + 4 * rounding;
@@ -91,10 +91,10 @@ SplitBounds split_bounds(const Scene& scene, const reference::Ray& ray, const re
         if (refracted) b.refracted = refracted_error(face, *refracted);
         if (material.fresnel) b.reflection = b.transmission = fresnel_error(face) + 4 * rounding;
     }
-    const double smooth_error = 4 * bounds.shading_normal + 10 * rounding;
+    const double smooth_error = 4 * bounds.shading_normal + 11 * rounding;
     const double away = glm::dot(reference::reflect(d, shading), geometric);
     consider(away / (smooth_error + bounds.geometric_normal));
-    b.reflected = away > 0 ? smooth_error : 4 * bounds.geometric_normal + 10 * rounding;
+    b.reflected = away > 0 ? smooth_error : 4 * bounds.geometric_normal + 11 * rounding;
     return b;
 }
 

@@ -31,13 +31,13 @@ SurfaceBounds triangle_bounds(const Scene& scene, const reference::Hit& hit) {
     b.offset = 16 * rounding * size + diagonal * (b.position + rounding * size);
     b.uv = 6 * rounding * uv;
     // Each edge is rounded once, so are the inner product and the result of each fused difference: with the three
-    // coordinates below 6 roundings of the edges' product. Normalising adds four.
+    // coordinates below 6 roundings of the edges' product. Normalising adds five.
     const dvec3 e1 = p[1] - p[0], e2 = p[2] - p[0];
     const double area = glm::length(glm::cross(e1, e2));
-    b.geometric_normal = rounding * (6 * glm::length(e1) * glm::length(e2) / area + 4);
+    b.geometric_normal = rounding * (6 * glm::length(e1) * glm::length(e2) / area + 5);
     // Interpolated like the position, over the length of what is normalised.
     const double length = glm::length((1 - hit.u - hit.v) * n[0] + hit.u * n[1] + hit.v * n[2]);
-    b.shading_normal = std::max(b.geometric_normal, rounding * (6 * diagonal * normals / length + 4));
+    b.shading_normal = std::max(b.geometric_normal, rounding * (6 * diagonal * normals / length + 5));
     if (!(length > 0)) b.shading_normal = b.geometric_normal;
     return b;
 }
@@ -45,8 +45,8 @@ SurfaceBounds triangle_bounds(const Scene& scene, const reference::Hit& hit) {
 SurfaceBounds sphere_bounds(const Sphere& sphere, const dvec3& hit_point) {
     const dvec3 center = reference::to_dvec3(sphere.center);
     SurfaceBounds b;
-    // The hit point is rounded once, its difference to the centre once more; normalising adds four.
-    b.geometric_normal = rounding * (diagonal * largest(hit_point) / glm::length(hit_point - center) + diagonal + 4);
+    // The hit point is rounded once, its difference to the centre once more; normalising adds five.
+    b.geometric_normal = rounding * (diagonal * largest(hit_point) / glm::length(hit_point - center) + diagonal + 5);
     b.shading_normal = b.geometric_normal;
     b.position = sphere.radius * b.geometric_normal + rounding * (largest(center) + sphere.radius);
     b.offset = 8 * rounding * (sphere.radius + largest(center)) +

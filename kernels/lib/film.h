@@ -90,14 +90,22 @@ static inline uint film_add_units(const Film* film, global long* sum, long units
     return plain ? 0 : 1;
 }
 
+/// Adds to all four channels of a pixel that no other item of the launch adds to; the channels that overflow, -1 each.
+static inline long4 film_add_alone(global long* sum, long4 units) {
+    const ulong4 before = *(global const ulong4*)sum, after = before + as_ulong4(units);
+    *(global ulong4*)sum = after;
+    return as_long4((before ^ after) & (as_ulong4(units) ^ after)) < 0;
+}
+
+static inline void film_count_overflow(const Film* film, long4 overflow) {
+    const long overflows = -(overflow.x + overflow.y + overflow.z + overflow.w);
+    if (overflows != 0) film_count_atomics(film, film_count(&film->counters->saturated, (uint)overflows));
+}
+
 /// Adds to all four channels of a pixel.
 static inline uint film_add_units4(const Film* film, global long* sum, long4 units) {
     if (film->flags & FILM_PIXELS_ONCE) {
-        const ulong4 before = *(global const ulong4*)sum, after = before + as_ulong4(units);
-        *(global ulong4*)sum = after;
-        const long4 overflow = as_long4((before ^ after) & (as_ulong4(units) ^ after)) < 0;
-        const long overflows = -(overflow.x + overflow.y + overflow.z + overflow.w);
-        if (overflows != 0) film_count_atomics(film, film_count(&film->counters->saturated, (uint)overflows));
+        film_count_overflow(film, film_add_alone(sum, units));
         return 0;
     }
     uint atomics = film_add_units(film, sum + 0, units.x);
@@ -116,39 +124,43 @@ static inline uint film_plane(uint term, uint route) {
     return route == ROUTE_CAMERA ? term : route == ROUTE_REFLECTED ? FILM_REFLECTION : FILM_REFRACTION;
 }
 
-/// Radiance of two terms for each of up to LANES items: rows of three channels, and a fourth that is 0.
+/// Radiance of two terms for each of up to LANES items: rows of three channels, and a fourth that is not read.
 typedef struct {
-    uint count;
+    uint lanes;  // with an item, one bit each
     uint pixel[LANES], route[LANES];
     Rows first, second;
 } Terms;
 
-static inline void terms_put(Terms* terms, uint pixel, uint route, float3 first, float3 second) {
-    const uint i = terms->count++;
-    terms->pixel[i] = pixel;
-    terms->route[i] = route;
-    ((float4*)&terms->first)[i] = (float4)(first, 0.0f);
-    ((float4*)&terms->second)[i] = (float4)(second, 0.0f);
+/// Four rows' channels in units of the film; nothing for rows without an item, of which `lanes` has no bit.
+static inline long16 film_units_of_rows(const Film* film, float16 rows, uint lanes) {
+    const uint16 channel = (uint16)(1, 1, 1, 0, 2, 2, 2, 0, 4, 4, 4, 0, 8, 8, 8, 0);
+    return film_units(film, select((float16)(0.0f), rows, ((uint16)(lanes) & channel) != 0u));
 }
 
 /// Adds the radiance of two terms. The beauty gets the sum of their integers, so that the planes still add up to it.
-/// Leaves none.
-COMPILED_ONCE static uint film_add_terms(const Film* film, uint first_term, uint second_term, Terms* terms) {
+COMPILED_ONCE static uint film_add_terms(const Film* film, uint first_term, uint second_term, const Terms* terms) {
     union {
         long16 part[4];
         long4 row[LANES];
     } first, both;
+    for (uint i = 0; i < 4; ++i) {
+        first.part[i] = film_units_of_rows(film, terms->first.part[i], terms->lanes >> 4 * i);
+        both.part[i] = first.part[i] + film_units_of_rows(film, terms->second.part[i], terms->lanes >> 4 * i);
+    }
     const bool by_term = film_keeps(film, first_term) || film_keeps(film, second_term) ||
                          film_keeps(film, FILM_REFLECTION) || film_keeps(film, FILM_REFRACTION);
-    for (uint i = terms->count; i < LANES; ++i)
-        ((float4*)&terms->first)[i] = ((float4*)&terms->second)[i] = (float4)(0.0f);
-    for (uint i = 0; i < 4; ++i) {
-        first.part[i] = film_units(film, terms->first.part[i]);
-        both.part[i] = first.part[i] + film_units(film, terms->second.part[i]);
+    if (!by_term && (film->flags & FILM_PIXELS_ONCE)) {
+        long4 overflow = (long4)(0);
+        for (uint rest = terms->lanes; rest != 0; rest &= rest - 1) {
+            const uint i = lowest_bit(rest);
+            overflow += film_add_alone(film_pixel(film, FILM_BEAUTY, terms->pixel[i]), both.row[i]);
+        }
+        film_count_overflow(film, overflow);
+        return 0;
     }
     uint atomics = 0;
-    for (uint i = 0; i < terms->count; ++i) {
-        const uint pixel = terms->pixel[i];
+    for (uint rest = terms->lanes; rest != 0; rest &= rest - 1) {
+        const uint i = lowest_bit(rest), pixel = terms->pixel[i];
         atomics += film_add_units4(film, film_pixel(film, FILM_BEAUTY, pixel), both.row[i]);
         if (!by_term) continue;
         const uint plane_a = film_plane(first_term, terms->route[i]),
@@ -157,7 +169,6 @@ COMPILED_ONCE static uint film_add_terms(const Film* film, uint first_term, uint
         if (film_keeps(film, plane_b))
             atomics += film_add_units4(film, film_pixel(film, plane_b, pixel), both.row[i] - first.row[i]);
     }
-    terms->count = 0;
     return atomics;
 }
 

@@ -83,13 +83,18 @@ static inline Lanes4 gather4(global const void* words, uint stride, uint16 index
     return columns_of(rows);
 }
 
-/// Four words of sixteen records in a row; `words` are those of the first.
-static inline Lanes4 load4(global const void* words, uint stride) {
+/// Four words of up to sixteen records in a row, the last one again where there are fewer; `words` are those of the first.
+static inline Rows load_rows(global const void* words, uint stride, uint count) {
     Rows rows;
 #pragma unroll
     for (uint lane = 0; lane < LANES; ++lane)
-        ((float4*)&rows)[lane] = *(global const Row*)((global const float*)words + lane * stride);
-    return columns_of(rows);
+        ((float4*)&rows)[lane] = *(global const Row*)((global const float*)words + min(lane, count - 1) * stride);
+    return rows;
+}
+
+/// Four words of sixteen records in a row.
+static inline Lanes4 load4(global const void* words, uint stride) {
+    return columns_of(load_rows(words, stride, LANES));
 }
 
 /// One word of the records.

@@ -9,6 +9,9 @@
 
 #define LANES 16
 
+/// The first `count` lanes, one bit each.
+static inline uint first_lanes(uint count) { return (1u << count) - 1u; }
+
 /// A point, direction or colour for each lane.
 typedef struct {
     float16 x, y, z;
@@ -62,8 +65,9 @@ static inline float16 lanes_dot(Lanes3 a, Lanes3 b) {
 static inline float16 lanes_length(Lanes3 v) {
     return sqrt(lanes_dot(v, v));
 }
+/// By one reciprocal, a rounding more than three divisions have.
 static inline Lanes3 lanes_unit(Lanes3 v) {
-    return lanes_div(v, lanes_length(v));
+    return lanes_scale(v, 1.0f / lanes_length(v));
 }
 static inline int16 lanes_any(Lanes3 v) {
     return (v.x != 0.0f) | (v.y != 0.0f) | (v.z != 0.0f);

@@ -18,7 +18,7 @@ static inline LightSample towards(Lanes3 position, Lanes3 p) {
     const Lanes3 to_light = lanes_sub(position, p);
     LightSample s;
     s.distance = lanes_length(to_light);
-    s.direction = lanes_div(to_light, s.distance);
+    s.direction = lanes_scale(to_light, 1.0f / s.distance);
     return s;
 }
 

@@ -127,7 +127,7 @@ COMPILED_ONCE static uint push_shadow_rays(const Shading* s, Lanes3 start, const
     const Rows diffuse = rows_of(a.diffuse, as_float16(s->hits.route));
     const Rows specular = rows_of(a.specular, as_float16((uint16)(slot.light)));
     uint count = 0;
-    for (uint rest = lane_mask16(adds) & ((1u << s->hits.count) - 1u); rest != 0; rest &= rest - 1) {
+    for (uint rest = lane_mask16(adds) & first_lanes(s->hits.count); rest != 0; rest &= rest - 1) {
         const uint lane = lowest_bit(rest);
         global ShadowRay* ray = out + count++;
         store_row(ray->origin, row_of(&from, lane));

@@ -34,7 +34,7 @@ COMPILED_ONCE static void shade_hits(const World* world, Shading* s) {
     s->diffuse = diffuse_color(world, &s->surface, s->flags, lanes_xyz(diffuse));
     s->specular = lanes_xyz(specular);
     s->local_share = positive16(1.0f - diffuse.w - specular.w);  // reflection and transmission
-    s->passing = lane_mask16(diffuse.w + specular.w > 0.0f) & ((1u << s->hits.count) - 1u);
+    s->passing = lane_mask16(diffuse.w + specular.w > 0.0f) & first_lanes(s->hits.count);
     s->weight = lanes_scale(s->throughput, s->local_share);
 }
 

@@ -228,9 +228,9 @@ static inline Lanes3 smooth_lift(const SurfaceLanes* s) {
 #pragma unroll
     for (uint k = 0; k < 3; ++k) {
         const CornerLanes* corner = s->corner + k;
-        const Lanes3 normal = lanes_scale(lanes_unit(corner->normal), side);
+        const Lanes3 normal = lanes_scale(corner->normal, side);  // of any length
         const float16 below = lanes_dot(lanes_sub(s->position, corner->position), normal);
-        lift = lanes_fma(corner->weight * positive16(-below), normal, lift);
+        lift = lanes_fma(corner->weight * positive16(-below) / lanes_dot(normal, normal), normal, lift);
     }
     return lift;
 }

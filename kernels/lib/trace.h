@@ -13,22 +13,33 @@ COMPILED_ONCE static void find_hits(const Geometry* geometry, global const Ray* 
     chunk_store_hits(&packet.rays, count, hits);
 }
 
-/// For each shadow ray some primitive that stands in its way, or NO_INDEX. blockers has RAYS_A_WORK_ITEM places.
-COMPILED_ONCE static void find_blockers(const Geometry* geometry, global const ShadowRay* rays, uint count,
-                                        uint* blockers) {
+/// The shadow rays that have something in their way, one bit each, and of each some primitive that stands there, or NO_INDEX.
+/// blockers has RAYS_A_WORK_ITEM places.
+COMPILED_ONCE static ulong find_blockers(const Geometry* geometry, global const ShadowRay* rays, uint count,
+                                         uint* blockers) {
     Packet packet;
     chunk_load(&packet.rays, rays, WORDS(ShadowRay), true, count);
     traverse_chunk(geometry, &packet, true);
-    for (uint group = 0; group < GROUPS; ++group) vstore16(packet.rays.best_primitive[group], group, blockers);
+    ulong blocked = 0;
+    for (uint group = 0; group < GROUPS; ++group) {
+        const uint16 primitive = packet.rays.best_primitive[group];
+        blocked |= (ulong)lane_mask16(primitive != NO_INDEX) << GROUP * group;
+        vstore16(primitive, group, blockers);
+    }
+    return blocked;
 }
 #else
 static void find_hits(const Geometry* geometry, global const Ray* rays, uint count, global Hit* hits) {
     for (uint i = 0; i < count; ++i) hits[i] = closest_hit(geometry, load3(rays[i].origin), load3(rays[i].direction));
 }
 
-static void find_blockers(const Geometry* geometry, global const ShadowRay* rays, uint count, uint* blockers) {
-    for (uint i = 0; i < count; ++i)
+static ulong find_blockers(const Geometry* geometry, global const ShadowRay* rays, uint count, uint* blockers) {
+    ulong blocked = 0;
+    for (uint i = 0; i < count; ++i) {
         blockers[i] = any_hit_before(geometry, load3(rays[i].origin), load3(rays[i].direction), rays[i].t_max).primitive;
+        blocked |= (ulong)(blockers[i] != NO_INDEX) << i;
+    }
+    return blocked;
 }
 #endif
 

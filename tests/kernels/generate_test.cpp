@@ -126,9 +126,9 @@ TEST_P(Generate, rays_start_and_point_like_the_reference_s) {
     // once; coordinates are below 9, the lens point errs by 7e-7 of a radius of 0.15.
     const double origin_bound = 9 * 6 * ROUNDING + 7e-7 * 0.15;
     // Of the direction, before normalisation at least 1 long: the film's position has 4 roundings of at most 1, its
-    // vectors 1 (of at most 2.5), the sums 3; normalisation 3. With a lens it is the focus distance (6.4) long, and its
+    // vectors 1 (of at most 2.5), the sums 3; normalisation 5. With a lens it is the focus distance (6.4) long, and its
     // end errs by that times the same, and by the lens point.
-    const double direction_bound = (4 * 1 + 2 * 2.5 + 3 * 2.5 + 3) * ROUNDING * 2 + 7e-7 * 0.15 / 6;
+    const double direction_bound = (4 * 1 + 2 * 2.5 + 3 * 2.5 + 5) * ROUNDING * 2 + 7e-7 * 0.15 / 6;
     for (std::size_t i = 0; i < order.size(); ++i) {
         const Sample& s = order[i];
         const reference::Ray expected = tracer.camera_ray(window.x0 + s.x, window.y0 + s.y, s.sample);

@@ -14,9 +14,9 @@ namespace raymill::test {
 //   position: a triangle's has 4 roundings of 4 a coordinate (28); a sphere's the rounding of the hit point (7), its
 //   normal
 //     by the radius (12), the sum (7); a plane's the hit point, and 4 roundings of its projection (28).
-//   normal: a triangle's edges and cross product have 5 roundings, times 4 for its shape, and 3 of normalisation; an
-//     interpolated one 6 roundings, at most halved in length, and 3; a sphere's the hit point's 7, divided by the
-//     radius, and 3.
+//   normal: a triangle's edges and cross product have 5 roundings, times 4 for its shape, and 5 of normalisation; an
+//     interpolated one 6 roundings, at most halved in length, and 5; a sphere's the hit point's 7, divided by the
+//     radius, and 5.
 inline constexpr double POSITION_ERROR = 32 * ROUNDING;
 inline constexpr double NORMAL_ERROR = 32 * ROUNDING;
 

@@ -20,9 +20,9 @@ using reference::SceneBuilder;
 
 /// Half a unit in the last place of 1: the relative error of one operation in single precision. Bounds count them.
 inline constexpr double rounding = 5.9604644775390625e-8;
-/// A camera ray's direction, the hit point and the normal there carry fewer roundings than this together, relative to
-/// the coordinates: unit vectors take 4 (dot product 2, root 1, division 1) and a hit 6 (edge functions, weights,
-/// sums).
+/// A camera ray's direction, the hit point and the normal there carry no more roundings than this together, relative to
+/// the coordinates: unit vectors take 5 (dot product 2, root 1, reciprocal 1, product 1) and a hit 6 (edge functions,
+/// weights, sums).
 inline constexpr double hit_roundings = 16 * rounding;
 
 inline double degrees(double angle) {
