@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
 #include <tuple>
 
 #include "capture/capture_file.hpp"
 #include "captured.hpp"
+#include "support/changed_kernels.hpp"
 #include "verify/capture_check.hpp"
 #include "wavefront/records.hpp"
 
@@ -79,7 +79,7 @@ TEST_P(Captured, launch_writes_the_same_each_time) {
 }
 
 TEST_P(Captured, launch_comes_back_from_its_file) {
-    const verify::TemporaryFolder folder;
+    const TemporaryFolder folder;
     const std::string file = folder.path() / "queue.wave";
     const Capture capture = capture_of(frame_, stage_, depth_);
     write_capture(file, capture);
@@ -151,18 +151,10 @@ TEST(Replay, with_the_film_of_a_frame_that_keeps_features_writes_the_same) {
     EXPECT_EQ(Bench(*capture, frame.scene).run().digest, capture->digest);
 }
 
-/// A copy of the kernels in which the first `right` of a file is `wrong`.
-void plant(const std::filesystem::path& folder, const char* file, const std::string& right, const std::string& wrong) {
-    std::filesystem::copy(RAYMILL_SOURCE_DIR "/kernels", folder, std::filesystem::copy_options::recursive);
-    std::string text = verify::read_text(folder / file);
-    const std::size_t place = text.find(right);
-    ASSERT_NE(place, std::string::npos) << file << " no longer contains: " << right;
-    std::ofstream(folder / file) << text.replace(place, right.size(), wrong);
-}
-
 TEST(Replay, by_kernels_with_a_mistake_writes_something_else_and_is_out_of_bounds) {
-    const verify::TemporaryFolder folder;
-    plant(folder.path() / "kernels", "lib/light.h", "attenuation = 1.0f / fma(", "attenuation = 1.00001f / fma(");
+    const TemporaryFolder folder;
+    change_kernels(folder.path() / "kernels", "lib/light.h", "attenuation = 1.0f / fma(",
+                   "attenuation = 1.00001f / fma(");
     if (HasFatalFailure()) return;
     TestFrame frame(branching_scene());
     const Capture capture = capture_of(frame, Stage::shade, 0, 0);

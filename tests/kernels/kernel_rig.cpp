@@ -27,9 +27,10 @@ class Shared : public testing::Environment {
         if (!device_) device_.emplace(open_device("", 0));
         return *device_;
     }
-    Stages& stages(Traversal traversal) {
-        if (!stages_.contains(traversal)) stages_.try_emplace(traversal, device(), 0, kernel_folder(), traversal);
-        return stages_.at(traversal);
+    Stages& stages(Traversal traversal, const std::string& folder) {
+        const std::pair key(traversal, folder.empty() ? kernel_folder() : folder);
+        if (!stages_.contains(key)) stages_.try_emplace(key, device(), 0, key.second, traversal);
+        return stages_.at(key);
     }
     const cl::Program& probe(const std::string& file) {
         const std::string folder = kernel_folder().empty() ? RAYMILL_SOURCE_DIR "/kernels" : kernel_folder();
@@ -48,7 +49,7 @@ class Shared : public testing::Environment {
 
   private:
     std::optional<Device> device_;
-    std::map<Traversal, Stages> stages_;
+    std::map<std::pair<Traversal, std::string>, Stages> stages_;  // with the kernels' folder
     std::map<std::string, cl::Program> probes_;
 };
 
@@ -59,8 +60,8 @@ const Device& device() {
     return shared->device();
 }
 
-Stages& stages(Traversal traversal = Traversal::automatic) {
-    return shared->stages(traversal);
+Stages& stages(Traversal traversal = Traversal::automatic, const std::string& folder = "") {
+    return shared->stages(traversal, folder);
 }
 
 /// An output buffer of the kernel: `capacity` items and the guards.
@@ -108,6 +109,7 @@ struct KernelRig::Parts {
     DeviceScene scene;
     std::size_t film_pixels;  // of all planes
     Traversal traversal = Traversal::automatic;
+    std::string folder;  // of the kernels
 };
 
 KernelRig::KernelRig(const Scene& scene)
@@ -124,8 +126,9 @@ KernelRig::KernelRig(const Scene& scene, const FilmPlanes& planes) {
 
 KernelRig::~KernelRig() = default;
 
-void KernelRig::use(Traversal traversal) {
+void KernelRig::use(Traversal traversal, const std::string& folder) {
     parts_->traversal = traversal;
+    parts_->folder = folder;
 }
 
 std::vector<Ray> KernelRig::generate(std::uint64_t first_sample, uint count) const {
@@ -140,7 +143,7 @@ IntersectResult KernelRig::intersect(std::span<const Ray> rays, uint first, bool
     Buffer<Hit> hits = guarded<Hit>(count);
     Film film = film_for(rays);
     film.pixels_once = pixels_once;
-    stages(parts_->traversal).intersect(parts_->scene, {queue, first, count}, hits, film);
+    stages(parts_->traversal, parts_->folder).intersect(parts_->scene, {queue, first, count}, hits, film);
     return {hits.read(device()), read(film)};
 }
 
@@ -167,7 +170,7 @@ FilmState KernelRig::features(std::span<const Ray> rays, std::span<const Hit> hi
 FilmState KernelRig::shadow(std::span<const ShadowRay> rays, std::span<const uint> counts) const {
     const ShadowQueue queue{filled(rays), filled(counts)};
     Film film = film_for(rays);
-    stages(parts_->traversal).shadow(parts_->scene, queue, static_cast<uint>(counts.size()), film);
+    stages(parts_->traversal, parts_->folder).shadow(parts_->scene, queue, static_cast<uint>(counts.size()), film);
     return read(film);
 }
 

@@ -76,8 +76,8 @@ class KernelRig {
     KernelRig(const Scene& scene, const FilmPlanes& planes);
     ~KernelRig();
 
-    /// How kernels trace from now on; before, as suits the device.
-    void use(Traversal traversal);
+    /// How kernels trace from now on; before, as suits the device. With a folder, those in it.
+    void use(Traversal traversal, const std::string& folder = "");
 
     std::vector<Ray> generate(std::uint64_t first_sample, uint count) const;
     /// Rays [first, end) of the queue. pixels_once: no two of them share a pixel.

@@ -6,6 +6,7 @@
 #include "kernel_rig.hpp"
 #include "queues.hpp"
 #include "random.hpp"
+#include "support/changed_kernels.hpp"
 
 namespace raymill::test {
 namespace {
@@ -43,12 +44,13 @@ void add_triangles(Mesh& mesh, const Mesh& more) {
     for (const Triangle& t : more.triangles) mesh.add_triangle(corner(t, 0), corner(t, 1), corner(t, 2));
 }
 
-void expect_the_same_together(const Scene& scene, std::uint32_t seed) {
+/// By packet kernels of the folder, if one is given.
+void expect_the_same_together(const Scene& scene, std::uint32_t seed, const std::string& kernels = "") {
     KernelRig rig(scene);
     const auto rays = bundles<Ray>(12, seed, [](const glm::vec3& from, const glm::vec3& to, uint i) {
         return make_ray(from, towards(from, to), i);
     });
-    rig.use(Traversal::packet);
+    rig.use(Traversal::packet, kernels);
     const auto together = rig.intersect(rays);
     rig.use(Traversal::single);
     const auto alone = rig.intersect(rays);
@@ -74,7 +76,7 @@ void expect_the_same_together(const Scene& scene, std::uint32_t seed) {
     std::vector<uint> counts(shadow_rays.size() / CHUNK, CHUNK);
     counts.push_back(static_cast<uint>(shadow_rays.size() % CHUNK));
     shadow_rays.resize(counts.size() * CHUNK);
-    rig.use(Traversal::packet);
+    rig.use(Traversal::packet, kernels);
     const FilmState lit = rig.shadow(shadow_rays, counts);
     rig.use(Traversal::single);
     const FilmState lit_alone = rig.shadow(shadow_rays, counts);
@@ -107,6 +109,15 @@ TEST(Together, rays_meet_spheres_triangles_and_planes_alike) {
     add_plane(scene, {0.5f, 0.1f, 0.5f}, {0, 1, 0});
     add_plane(scene, {0.5f, 0.5f, 0.9f}, glm::normalize(glm::vec3(-1, 2, -3)));
     expect_the_same_together(scene, 75);
+}
+
+TEST(Together, any_hits_of_streams_that_fill_their_stacks_are_those_of_rays_alone) {
+    const TemporaryFolder folder;
+    change_kernels(folder.path() / "kernels", "lib/stream.h", "#define STREAM_FULL 512", "#define STREAM_FULL 4");
+    if (HasFatalFailure()) return;
+    Mesh mesh = slivers(3000, 77);
+    add_triangles(mesh, random_soup(200, 78, 0.2f));
+    expect_the_same_together(scene_of(mesh), 77, folder.path() / "kernels");
 }
 
 }  // namespace

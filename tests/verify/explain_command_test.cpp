@@ -3,9 +3,9 @@
 #include <sys/wait.h>
 
 #include <cstdlib>
-#include <fstream>
 
 #include "frame.hpp"
+#include "support/changed_kernels.hpp"
 
 namespace raymill::verify {
 namespace {
@@ -20,7 +20,7 @@ Outcome run(const std::string& arguments) {
     const std::string out = folder.path() / "out", err = folder.path() / "err";
     const std::string command = std::string(RAYMILL_PROGRAM) + " " + arguments + " >" + out + " 2>" + err;
     const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(out), read_text(err)};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_bytes(out), read_bytes(err)};
 }
 
 const std::string scene = RAYMILL_SOURCE_DIR "/tests/verify/branching.toml";
@@ -51,7 +51,7 @@ TEST(ExplainCommand, the_rays_go_to_an_obj_file) {
     const TemporaryFolder folder;
     const std::string file = folder.path() / "rays.obj";
     EXPECT_EQ(run("explain " + scene + " --pixel 15,10 --sample 0 --obj " + file).status, 0);
-    EXPECT_EQ(read_text(file).find("# sample 0, camera ray, depth 0, hits "), 0u);
+    EXPECT_EQ(read_bytes(file).find("# sample 0, camera ray, depth 0, hits "), 0u);
     EXPECT_EQ(run("explain " + scene + " --pixel 15,10 --obj /no/such/folder/rays.obj").status, 1);
 }
 
@@ -62,12 +62,8 @@ TEST(VerifyCommand, kernels_within_bounds_are_status_0_and_a_planted_bug_status_
 
     const TemporaryFolder folder;
     const std::filesystem::path kernels = folder.path() / "kernels";
-    std::filesystem::copy(RAYMILL_SOURCE_DIR "/kernels", kernels, std::filesystem::copy_options::recursive);
-    std::string text = read_text(kernels / "secondary.cl");
-    const std::string right = "leave_surfaces(world, s, side)";
-    ASSERT_NE(text.find(right), std::string::npos);
-    text.replace(text.find(right), right.size(), "leave_surfaces(world, s, -side)");
-    std::ofstream(kernels / "secondary.cl") << text;
+    change_kernels(kernels, "secondary.cl", "leave_surfaces(world, s, side)", "leave_surfaces(world, s, -side)");
+    if (HasFatalFailure()) return;
     const Outcome bad = run("verify " + scene + " --size 16x12 --kernel-dir " + kernels.string());
     EXPECT_EQ(bad.status, 1);
     EXPECT_NE(bad.out.find("starts on the right side"), std::string::npos) << bad.out;

@@ -1,8 +1,6 @@
 #include "frame.hpp"
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 #include <stdexcept>
 
 namespace raymill::verify {
@@ -33,22 +31,6 @@ const StageReport& report_of(const std::vector<StageReport>& reports, const std:
     const auto found = std::ranges::find(reports, stage, &StageReport::stage);
     if (found == reports.end()) throw std::invalid_argument("no stage " + stage);
     return *found;
-}
-
-TemporaryFolder::TemporaryFolder() {
-    std::string name = std::filesystem::temp_directory_path() / "raymill-verify-XXXXXX";
-    if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder");
-    path_ = name;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-    std::filesystem::remove_all(path_);
-}
-
-std::string read_text(const std::filesystem::path& file) {
-    std::ostringstream text;
-    text << std::ifstream(file).rdbuf();
-    return text.str();
 }
 
 }  // namespace raymill::verify

@@ -1,7 +1,6 @@
 // A scene on a device, ready to be verified or explained.
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -27,20 +26,5 @@ struct TestFrame {
 
 /// The report of one stage.
 const StageReport& report_of(const std::vector<StageReport>& reports, const std::string& stage);
-
-/// A folder of its own that goes away with it.
-class TemporaryFolder {
-  public:
-    TemporaryFolder();
-    ~TemporaryFolder();
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    const std::filesystem::path& path() const { return path_; }
-
-  private:
-    std::filesystem::path path_;
-};
-
-std::string read_text(const std::filesystem::path& file);
 
 }  // namespace raymill::verify

@@ -1,9 +1,8 @@
 // Kernels with one mistake each: verify must find it, and in the right stage.
 #include <gtest/gtest.h>
 
-#include <fstream>
-
 #include "frame.hpp"
+#include "support/changed_kernels.hpp"
 
 namespace raymill::verify {
 namespace {
@@ -43,20 +42,10 @@ const PlantedBug bugs[] = {
 
 class Planted : public testing::TestWithParam<PlantedBug> {};
 
-/// A copy of the kernels with the bug's one change.
-void plant(const PlantedBug& bug, const std::filesystem::path& folder) {
-    std::filesystem::copy(RAYMILL_SOURCE_DIR "/kernels", folder, std::filesystem::copy_options::recursive);
-    std::string text = read_text(folder / bug.file);
-    const std::size_t place = text.find(bug.right);
-    ASSERT_NE(place, std::string::npos) << bug.file << " no longer contains: " << bug.right;
-    text.replace(place, std::string(bug.right).size(), bug.wrong);
-    std::ofstream(folder / bug.file) << text;
-}
-
 TEST_P(Planted, bug_is_found_in_its_stage) {
     const PlantedBug& bug = GetParam();
     const TemporaryFolder folder;
-    plant(bug, folder.path() / "kernels");
+    change_kernels(folder.path() / "kernels", bug.file, bug.right, bug.wrong);
     if (HasFatalFailure()) return;
     Scene scene = branching_scene();
     scene.camera.aperture = 0;
