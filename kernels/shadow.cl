@@ -18,8 +18,9 @@ static inline void load_terms(global const ShadowRay* rays, uint count, Terms* t
     }
 }
 
-/// What is left of a ray's light, in the way of which a primitive stands.
-static inline float3 light_left(const Geometry* geometry, const World* world, global const ShadowRay* ray, uint blocker) {
+/// What is left of a ray's light behind a primitive in its way.
+static inline float3 light_left(const Geometry* geometry, const World* world, global const ShadowRay* ray,
+                                uint blocker) {
     const float3 left = filter_of(world, blocker);
     if (!any(left != 0.0f)) return left;
     // Another surface on the way may block what this one lets through.
@@ -65,7 +66,7 @@ kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shado
                 ((float4*)&terms.first)[lane] *= (float4)(left, 0.0f);
                 ((float4*)&terms.second)[lane] *= (float4)(left, 0.0f);
             } else {
-                terms.lanes &= ~(rest & -rest);
+                terms.lanes &= ~(1u << lane);
                 ++blocked;
             }
         }

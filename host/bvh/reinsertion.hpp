@@ -8,8 +8,9 @@
 
 namespace raymill::bvh {
 
-/// The same leaves in a tree of less surface area; the tree itself if the new one would be higher than
-/// MAX_BINARY_HEIGHT. Runs in the caller's task arena; the result does not depend on its size.
+/// The same leaves in a tree of less surface area, as long as rounds gain something to speak of; the tree itself if
+/// none does, or if the new one would be higher than MAX_BINARY_HEIGHT. Runs in the caller's task arena; the result
+/// does not depend on its size.
 BinaryTree reinsert(BinaryTree tree, std::uint32_t triangle_count);
 
 }  // namespace raymill::bvh

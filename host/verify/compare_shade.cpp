@@ -68,8 +68,8 @@ Bounded absorption_of(const SceneMaterial& material, const reference::Ray& ray, 
     if (!inside || material.absorption == glm::vec3(0)) return exact(dvec3(1));
     const dvec3 depth = hit.t * glm::length(ray.direction) * dvec3(material.absorption);
     const dvec3 left = glm::exp(-depth);
-    // The exponent has four roundings and the direction's length four more; lib/math.h: the power itself four.
-    return {left, left * (8 * rounding * depth + 6 * rounding) + underflow};
+    // The exponent has four roundings and the direction's length five more; lib/math.h: the power itself four.
+    return {left, left * (9 * rounding * depth + 6 * rounding) + underflow};
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ OwnError own_error(const PointLight& light, const reference::LightSample&) {
 }
 
 OwnError own_error(const SpotLight& light, const reference::LightSample& s) {
-    // The cone's ramp is scale * cosine + offset: both constants are rounded, and so is the cosine (four times).
+    // The cone's ramp is scale * cosine + offset: both constants are rounded, and their sum; the cosine has nine more.
     const double cos_inner = std::cos(glm::radians(double{light.inner_angle}));
     const double cos_outer = std::cos(glm::radians(double{light.outer_angle}));
     const double ramp = 12 * rounding / std::max(0.001, cos_inner - cos_outer);
@@ -44,9 +44,9 @@ OwnError own_error(const DirectionalLight&, const reference::LightSample&) {
     return {0, 3 * rounding, 0, {}};
 }
 
-/// The cosine at the light has an absolute error of eight roundings.
+/// The cosine at the light has an absolute error of nine roundings: direction five, inner product three, normal one.
 dvec3 form_error(const dvec3& radiance, double area, double distance) {
-    return radiance * (8 * rounding * area / (glm::pi<double>() * distance * distance));
+    return radiance * (9 * rounding * area / (glm::pi<double>() * distance * distance));
 }
 
 OwnError own_error(const RectangleLight& light, const reference::LightSample& s) {
@@ -105,7 +105,7 @@ Factors factors_at(const SceneMaterial& material, const Point& p) {
         const dvec3 sum = p.l + p.v;
         const double length = std::max(glm::length(sum), 1e-300);
         h = glm::dot(p.n, sum) / length;
-        h_error = p.n_error + 2 * (p.l_error + 5 * rounding) / length + 6 * rounding;
+        h_error = p.n_error + 2 * (p.l_error + 7 * rounding) / length + 6 * rounding;
     }
     const double alpha = material.shininess;
     const double low = power(h - h_error, alpha), middle = power(h, alpha), high = power(h + h_error, alpha);

@@ -17,14 +17,14 @@ struct Interface {
     double eta;
 };
 
-// The root of 1 - sin^2 is taken of a number that carries six roundings: so many in eta cover it.
-constexpr double eta_spread = 6 * rounding;
+// The root of 1 - sin^2 is taken of a number that carries seven roundings: so many in eta cover it.
+constexpr double eta_spread = 7 * rounding;
 
 /// Signed distance of sin^2 from 1 over its bound: positive where the ray passes.
 double passing_margin(const Interface& i) {
     const dvec3 tangential = (i.d - glm::dot(i.d, i.n) * i.n) / i.eta;
     const double sin2 = glm::dot(tangential, tangential);
-    const double tangential_error = (2 * i.n_error + 6 * rounding) / i.eta;
+    const double tangential_error = (2 * i.n_error + 7 * rounding) / i.eta;
     return (1 - sin2) / (2 * std::sqrt(sin2) * tangential_error + 8 * rounding * sin2 + rounding);
 }
 
@@ -36,7 +36,7 @@ double refracted_error(const Interface& i, const dvec3& refracted) {
     double error = 9 * rounding;
     for (int axis = 0; axis < 3; ++axis) {
         dvec3 shift(0);
-        shift[axis] = i.n_error + 4 * rounding;
+        shift[axis] = i.n_error + 5 * rounding;
         error += std::max(distance(i.n - shift, i.eta), distance(i.n + shift, i.eta));
     }
     if (i.eta != 1) error += std::max(distance(i.n, i.eta * (1 - eta_spread)), distance(i.n, i.eta * (1 + eta_spread)));
@@ -46,7 +46,7 @@ double refracted_error(const Interface& i, const dvec3& refracted) {
 /// Of the reflectance.
 double fresnel_error(const Interface& i) {
     const double cosine = std::clamp(-glm::dot(i.d, i.n), 0.0, 1.0);
-    const double step = i.n_error + 6 * rounding;
+    const double step = i.n_error + 7 * rounding;
     const double middle = reference::fresnel(cosine, i.eta);
     double error = 12 * rounding;
     for (const double c : {cosine - step, cosine + step})

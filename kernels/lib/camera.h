@@ -4,10 +4,11 @@
 
 #include "lib/sampling.h"
 
-/// A place in the order of camera samples: whole tiles of TILE x TILE pixels row by row, then those that are left at the
-/// right edge from top to bottom, then those at the bottom from left to right, as wide and high as there is room; none is
-/// padded. In a tile all pixels of one sample come after the other, in a whole one in Z-order. So 64 rays in a row are
-/// neighbours, and sixteen are closer ones; and narrow tiles do not put the whole ones out of step with the chunks.
+/// A place in the order of camera samples: whole tiles of TILE x TILE pixels row by row, then those that are left at
+/// the right edge from top to bottom, then those at the bottom from left to right, as wide and high as there is room;
+/// none is padded. In a tile the samples come one after the other, each with all its pixels, in a whole tile in
+/// Z-order. So 64 rays in a row are neighbours, and sixteen are closer ones; and narrow tiles do not put the whole ones
+/// out of step with the chunks.
 typedef struct {
     uint tile_x, tile_y;  // first pixel of the tile, in the rendered window
     uint columns, rows;   // of the tile

@@ -83,7 +83,8 @@ static inline Lanes4 gather4(global const void* words, uint stride, uint16 index
     return columns_of(rows);
 }
 
-/// Four words of up to sixteen records in a row, the last one again where there are fewer; `words` are those of the first.
+/// Four words of up to sixteen records in a row, of the last one again where there are fewer; `words` are those of the
+/// first.
 static inline Rows load_rows(global const void* words, uint stride, uint count) {
     Rows rows;
 #pragma unroll

@@ -13,8 +13,8 @@ COMPILED_ONCE static void find_hits(const Geometry* geometry, global const Ray* 
     chunk_store_hits(&packet.rays, count, hits);
 }
 
-/// The shadow rays that have something in their way, one bit each, and of each some primitive that stands there, or NO_INDEX.
-/// blockers has RAYS_A_WORK_ITEM places.
+/// Returns the shadow rays that are blocked, one bit each. blockers, of RAYS_A_WORK_ITEM places, gets some primitive that
+/// blocks each ray, or NO_INDEX.
 COMPILED_ONCE static ulong find_blockers(const Geometry* geometry, global const ShadowRay* rays, uint count,
                                          uint* blockers) {
     Packet packet;

@@ -139,8 +139,8 @@ Build EmbreeSide::build(Quality quality, RTCFilterFunctionN occluded_filter) {
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     built_.push_back(std::move(made));
     // Its leaves copy triangles, but only name spheres, which rays then read from our array.
-    const std::size_t spheres_bytes = spheres_.size() * sizeof(glm::vec4);
-    return {took.count(), static_cast<std::size_t>(bytes_ - before) + spheres_bytes};
+    const std::size_t sphere_bytes = spheres_.size() * sizeof(glm::vec4);
+    return {took.count(), static_cast<std::size_t>(bytes_ - before) + sphere_bytes};
 }
 
 std::vector<CameraHit> EmbreeSide::closest_hits(std::span<const BenchRay> rays) const {

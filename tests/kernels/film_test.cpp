@@ -104,6 +104,14 @@ TEST(Film, plain_adds_make_the_sums_and_counts_of_atomic_ones) {
     EXPECT_TRUE(same_bits(plain.counters, atomic.counters));
 }
 
+TEST(Film, plain_sums_that_overflow_are_counted_each) {
+    std::vector<Ray> rays;
+    for (uint i = 0; i < 20; ++i) rays.push_back(weighing(i == 2 || i == 7 || i == 17 ? LARGEST : 1, i));
+    const KernelRig rig(nothing_but_background());
+    EXPECT_EQ(rig.intersect(rays, 0, true, 127).film.counters.saturated, 0u);
+    EXPECT_EQ(rig.intersect(rays, 0, true, 128).film.counters.saturated, 3u);
+}
+
 TEST(Film, negative_light_subtracts) {
     const std::vector<Ray> rays = {weighing(-0.375f, 0), weighing(0.125f, 0)};
     EXPECT_EQ(KernelRig(nothing_but_background()).intersect(rays).film.at(0, 0), film_units(-0.25f));

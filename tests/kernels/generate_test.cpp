@@ -177,6 +177,9 @@ TEST(GenerateOfManySamples, the_last_of_more_than_2_to_the_32_samples_is_the_las
         const uint whole_width = width / TILE * TILE;
         const Ray corner = rig.generate(std::uint64_t{TILE} * whole_width * static_cast<uint>(size.spp) - 1, 1)[0];
         EXPECT_EQ(corner.pixel, (TILE - 1) * width + whole_width - 1);
+        const uint whole_height = static_cast<uint>(size.height) / TILE * TILE;
+        const Ray at_edge = rig.generate(std::uint64_t{whole_width} * whole_height * static_cast<uint>(size.spp), 1)[0];
+        EXPECT_EQ(at_edge.pixel, whole_width < width ? whole_width : whole_height * width);
     }
 }
 

@@ -137,13 +137,14 @@ std::vector<Ray> KernelRig::generate(std::uint64_t first_sample, uint count) con
     return rays.read(device());
 }
 
-IntersectResult KernelRig::intersect(std::span<const Ray> rays, uint first, bool pixels_once) const {
+IntersectResult KernelRig::intersect(std::span<const Ray> rays, uint first, bool pixels_once, int launches) const {
     const uint count = static_cast<uint>(rays.size()) - first;
     const Buffer<Ray> queue = filled(rays);
     Buffer<Hit> hits = guarded<Hit>(count);
     Film film = film_for(rays);
     film.pixels_once = pixels_once;
-    stages(parts_->traversal, parts_->folder).intersect(parts_->scene, {queue, first, count}, hits, film);
+    for (int launch = 0; launch < launches; ++launch)
+        stages(parts_->traversal, parts_->folder).intersect(parts_->scene, {queue, first, count}, hits, film);
     return {hits.read(device()), read(film)};
 }
 
@@ -167,9 +168,10 @@ FilmState KernelRig::features(std::span<const Ray> rays, std::span<const Hit> hi
     return read(film);
 }
 
-FilmState KernelRig::shadow(std::span<const ShadowRay> rays, std::span<const uint> counts) const {
+FilmState KernelRig::shadow(std::span<const ShadowRay> rays, std::span<const uint> counts, bool pixels_once) const {
     const ShadowQueue queue{filled(rays), filled(counts)};
     Film film = film_for(rays);
+    film.pixels_once = pixels_once;
     stages(parts_->traversal, parts_->folder).shadow(parts_->scene, queue, static_cast<uint>(counts.size()), film);
     return read(film);
 }

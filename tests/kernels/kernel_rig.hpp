@@ -80,15 +80,16 @@ class KernelRig {
     void use(Traversal traversal, const std::string& folder = "");
 
     std::vector<Ray> generate(std::uint64_t first_sample, uint count) const;
-    /// Rays [first, end) of the queue. pixels_once: no two of them share a pixel.
-    IntersectResult intersect(std::span<const Ray> rays, uint first = 0, bool pixels_once = false) const;
+    /// Rays [first, end) of the queue, in so many launches of all. pixels_once: no two of them share a pixel.
+    IntersectResult intersect(std::span<const Ray> rays, uint first = 0, bool pixels_once = false,
+                              int launches = 1) const;
     /// hits[i] belongs to rays[first + i].
     ShadeResult shade(std::span<const Ray> rays, std::span<const Hit> hits, uint first_slot, uint slot_count,
                       uint first = 0) const;
     /// hits[i] belongs to rays[first + i]. The film has all kept planes, each of the scene's whole image.
     FilmState features(std::span<const Ray> rays, std::span<const Hit> hits, uint depth, uint first = 0) const;
-    /// rays: CHUNK for each of the counts.
-    FilmState shadow(std::span<const ShadowRay> rays, std::span<const uint> counts) const;
+    /// rays: CHUNK for each of the counts. pixels_once: no two of them share a pixel.
+    FilmState shadow(std::span<const ShadowRay> rays, std::span<const uint> counts, bool pixels_once = false) const;
     SecondaryResult secondary(std::span<const Ray> rays, std::span<const Hit> hits, uint capacity,
                               uint first = 0) const;
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "kernel_rig.hpp"
@@ -244,6 +245,31 @@ TEST(Shadow, every_filter_on_the_way_is_crossed_once_in_the_order_of_distance) {
         for (int k = 0; k < 3; ++k) EXPECT_EQ(film.at(i, k), film_units(left[k])) << i << " surfaces, channel " << k;
     }
     EXPECT_EQ(film.counters.shadow_blocked, 0u);
+}
+
+TEST(Shadow, plain_adds_make_the_sums_and_counts_of_atomic_ones) {
+    Filters filters = filters_across_the_axis();
+    add_wall(filters.scene, 19.75f);
+    std::vector<ShadowRay> rays = rays_along_the_axis(filters.colors.size());
+    store(rays[5].specular, {0.25f, -0.5f, 1e30f});  // of which the film holds a part
+    const std::vector<uint> counts = {static_cast<uint>(filters.colors.size()) + 1};
+    const KernelRig rig(filters.scene);
+    const FilmState atomic = rig.shadow(rays, counts), plain = rig.shadow(rays, counts, true);
+    EXPECT_EQ(atomic.counters.saturated, 1u);
+    EXPECT_EQ(plain.sums, atomic.sums);
+    EXPECT_TRUE(same_bits(plain.counters, atomic.counters));
+}
+
+TEST(Shadow, what_a_blocked_ray_would_bring_is_not_looked_at) {
+    Filters filters = filters_across_the_axis();
+    add_wall(filters.scene, 0.75f);  // behind the end of the first ray, before those of the others
+    std::vector<ShadowRay> rays = rays_along_the_axis(filters.colors.size());
+    const std::vector<uint> counts = {static_cast<uint>(filters.colors.size()) + 1};
+    const KernelRig rig(filters.scene);
+    rays[1].diffuse[0] = rays[20].specular[1] = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_EQ(rig.shadow(rays, counts).counters.not_a_number, 0u);
+    rays[0].diffuse[0] = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_EQ(rig.shadow(rays, counts).counters.not_a_number, 1u);
 }
 
 TEST(Shadow, an_opaque_surface_among_many_filters_blocks) {

@@ -46,11 +46,11 @@ TEST(Lambert, is_the_cosine_at_every_angle_from_0_to_91_degrees) {
     }
 }
 
-/// How far base^exponent may be off: its base by 16 roundings (two unit vectors, a mirror direction, a dot product),
+/// How far base^exponent may be off: its base by 18 roundings (two unit vectors, a mirror direction, a dot product),
 /// the power itself by what lib/math.h states and the film's unit.
 double power_bound(double base, double exponent) {
-    const double high = std::pow(std::min(base + hit_roundings, 1.0), exponent);
-    const double low = std::pow(std::max(base - hit_roundings, 0.0), exponent);
+    const double high = std::pow(std::min(base + 18 * rounding, 1.0), exponent);
+    const double low = std::pow(std::max(base - 18 * rounding, 0.0), exponent);
     const double steps = base > 0 ? 4 + 4 * exponent * std::abs(std::log2(base)) : 0;
     return high - low + rounding * steps * std::pow(base, exponent) + std::ldexp(1, -32);
 }
