@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <numeric>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -21,7 +22,6 @@ constexpr std::size_t PARALLEL_SIZE = 2048;  // shorter ranges are one task
 
 using Index = std::uint32_t;
 constexpr Index ROOT = 0;
-constexpr Index NO_SOURCE = 0xffffffffu;
 
 /// Siblings are neighbours, at 2k + 1 and 2k + 2. Boxes are in units of the root's largest edge: they decide what moves
 /// where, and nothing else depends on them, so rounding does no harm.
@@ -30,10 +30,10 @@ struct LinkedNode {
     Float4 upper;
     Index first;  // of an inner node its first child, of a leaf its first primitive
     Index parent;
-    Index source;  // of a leaf its place in the tree that this one was made from; NO_SOURCE for an inner node
+    Index count;  // primitives of a leaf; 0 of an inner node
     float area;
 
-    bool is_leaf() const { return source != NO_SOURCE; }
+    bool is_leaf() const { return count != 0; }
 };
 
 Index sibling_of(Index node) {
@@ -55,13 +55,13 @@ struct Move {
 
 class LinkedTree {
   public:
-    explicit LinkedTree(const BinaryTree& tree) : source_(tree) {
+    explicit LinkedTree(const BinaryTree& tree) {
         const BinaryNode& root = tree.nodes[0];
         float edge = 0;
         for (int axis = 0; axis < 3; ++axis) edge = std::max(edge, 0.5f * root.upper[axis] - 0.5f * root.lower[axis]);
         scale_ = splat(0.5f / std::max(edge, 1e-37f));
         nodes_.emplace_back().parent = ROOT;
-        link(ROOT, 0, 0);
+        link(ROOT, tree.nodes.data(), 0, 0);
     }
 
     std::size_t size() const { return nodes_.size(); }
@@ -95,25 +95,25 @@ class LinkedTree {
     }
 
   private:
-    /// Copies the subtree at `from` in the source, whose first primitive is `begin`, to `to`.
-    void link(Index to, std::size_t from, Index begin) {
-        const BinaryNode& node = source_.nodes[from];
+    /// Copies the subtree at `from` of a tree, whose first primitive is `begin`, to `to`.
+    void link(Index to, const BinaryNode* tree, std::size_t from, Index begin) {
+        const BinaryNode& node = tree[from];
         nodes_[to].lower = Float4{node.lower[0], node.lower[1], node.lower[2], 0} * scale_;
         nodes_[to].upper = Float4{node.upper[0], node.upper[1], node.upper[2], 0} * scale_;
         nodes_[to].area = half_area(nodes_[to].lower, nodes_[to].upper);
         if (node.is_leaf()) {
-            nodes_[to].source = static_cast<Index>(from);
+            nodes_[to].count = node.count;
             nodes_[to].first = begin;
             return;
         }
         const auto first = static_cast<Index>(nodes_.size());
         nodes_.resize(nodes_.size() + 2);
-        nodes_[to].source = NO_SOURCE;
+        nodes_[to].count = 0;
         nodes_[to].first = first;
         nodes_[first].parent = nodes_[first + 1].parent = to;
         const std::size_t left = left_child(from);
-        link(first, left, begin);
-        link(first + 1, right_child(source_.nodes.data(), from), begin + source_.nodes[left].count);
+        link(first, tree, left, begin);
+        link(first + 1, tree, right_child(tree, from), begin + tree[left].count);
     }
 
     /// Those with the largest boxes, the root aside.
@@ -162,7 +162,6 @@ class LinkedTree {
         }
     }
 
-    const BinaryTree& source_;
     LargeArray<LinkedNode> nodes_;
     Float4 scale_;
 };
@@ -224,7 +223,7 @@ void LinkedTree::apply(const Move& move) {
     nodes_[sibling].parent = target;
     set_children_parent(sibling);
 
-    nodes_[target].source = NO_SOURCE;
+    nodes_[target].count = 0;
     nodes_[target].first = std::min(move.node, sibling);
     nodes_[target].parent = above;
     nodes_[move.node].parent = target;
@@ -233,22 +232,21 @@ void LinkedTree::apply(const Move& move) {
     refit(target);
 }
 
-/// Writes a linked tree back in the layout of BinaryTree.
+/// Writes a linked tree over the one that it was made from.
 class Writer {
   public:
-    Writer(const BinaryTree& source, const LinkedTree& linked, std::uint32_t triangle_count)
-        : source_(source), linked_(linked), triangle_count_(triangle_count) {
+    Writer(BinaryTree& tree, const LinkedTree& linked, std::uint32_t triangle_count)
+        : tree_(tree), linked_(linked), triangle_count_(triangle_count) {
         counts_.resize(linked.size());
         height_ = count(ROOT, 0);
     }
 
     bool fits() const { return height_ <= MAX_BINARY_HEIGHT; }
 
-    BinaryTree write() {
-        result_.nodes.resize(source_.nodes.size());
-        result_.refs.resize(source_.refs.size());
+    void write() {
+        refs_.resize(tree_.refs.size());
         write(ROOT, 0, 0);
-        return std::move(result_);
+        tree_.refs = std::move(refs_);
     }
 
   private:
@@ -256,7 +254,7 @@ class Writer {
     int count(Index node, int depth) {
         const LinkedNode& n = linked_[node];
         if (n.is_leaf()) {
-            counts_[node] = source_.nodes[n.source].count;
+            counts_[node] = n.count;
             return 0;
         }
         if (depth > MAX_BINARY_HEIGHT) return 1;
@@ -268,12 +266,18 @@ class Writer {
     /// The subtree at `from`, its first primitive at `begin`.
     SubtreeCost write(Index from, std::size_t to, std::size_t begin) {
         const LinkedNode& linked = linked_[from];
-        BinaryNode& node = result_.nodes[to];
+        BinaryNode& node = tree_.nodes[to];
+        node.count = counts_[from];
         if (linked.is_leaf()) {
-            node = source_.nodes[linked.source];
-            const PrimitiveRef* refs = &source_.refs[linked.first];
-            std::copy_n(refs, node.count, &result_.refs[begin]);
-            return collapse_leaf(bvh::half_area(node.lower, node.upper), node.count, refs->id() >= triangle_count_,
+            const std::span<const PrimitiveRef> refs(&tree_.refs[linked.first], node.count);
+            std::ranges::copy(refs, &refs_[begin]);
+            Box box;
+            for (const PrimitiveRef& ref : refs) box.add(ref.box());
+            for (int axis = 0; axis < 3; ++axis) {
+                node.lower[axis] = box.lower[axis];
+                node.upper[axis] = box.upper[axis];
+            }
+            return collapse_leaf(bvh::half_area(node.lower, node.upper), node.count, refs[0].id() >= triangle_count_,
                                  node.choice);
         }
         const Index left = linked.first, right = left + 1;
@@ -287,21 +291,20 @@ class Writer {
         } else {
             tbb::parallel_invoke(write_left, write_right);
         }
-        const BinaryNode &a = result_.nodes[left_to], &b = result_.nodes[right_to];
+        const BinaryNode &a = tree_.nodes[left_to], &b = tree_.nodes[right_to];
         for (int axis = 0; axis < 3; ++axis) {
             node.lower[axis] = std::min(a.lower[axis], b.lower[axis]);
             node.upper[axis] = std::max(a.upper[axis], b.upper[axis]);
         }
-        node.count = counts_[from];
         return collapse_inner(bvh::half_area(node.lower, node.upper), node.count, left_cost, right_cost, node.choice);
     }
 
-    const BinaryTree& source_;
+    BinaryTree& tree_;
     const LinkedTree& linked_;
     std::uint32_t triangle_count_;
     std::vector<Index> counts_;
     int height_ = 0;
-    BinaryTree result_;
+    LargeArray<PrimitiveRef> refs_;
 };
 
 }  // namespace
@@ -317,7 +320,8 @@ BinaryTree reinsert(BinaryTree tree, std::uint32_t triangle_count) {
     }
     if (gain == 0) return tree;
     Writer writer(tree, linked, triangle_count);
-    return writer.fits() ? writer.write() : std::move(tree);
+    if (writer.fits()) writer.write();
+    return tree;
 }
 
 }  // namespace raymill::bvh
