@@ -13,8 +13,8 @@ COMPILED_ONCE static void find_hits(const Geometry* geometry, global const Ray* 
     chunk_store_hits(&packet.rays, count, hits);
 }
 
-/// Returns the shadow rays that are blocked, one bit each. blockers, of RAYS_A_WORK_ITEM places, gets some primitive that
-/// blocks each ray, or NO_INDEX.
+/// Returns the shadow rays that are blocked, one bit each. blockers, of RAYS_A_WORK_ITEM places, gets some primitive
+/// that blocks each ray, or NO_INDEX.
 COMPILED_ONCE static ulong find_blockers(const Geometry* geometry, global const ShadowRay* rays, uint count,
                                          uint* blockers) {
     Packet packet;
