@@ -13,8 +13,11 @@
 // Directions that differ by more than this on an axis share too few nodes to be worth it.
 #define COHERENT_SPREAD 0.4f
 #define FEWEST_TOGETHER 24  // rays of a packet, and of those that meet a child: fewer go on as a stream
+// Of a pinhole's rays only these leave the packet, at a leaf, and at once: they go the same way all the same, so that most
+// visits are not worth counting for.
+#define FEW_OF_PINHOLE 4
 
-// Such children that a stream begins with where any hit will do: with one it would wait for that one's memory. Closest hits
+// Children that a stream begins with where any hit will do: with one it would wait for that one's memory. Closest hits
 // are looked for at once, since what they find may cull.
 #define HANDED_TOGETHER 4
 
@@ -214,6 +217,35 @@ static inline uint push_groups(const Geometry* geometry, global const uint* chil
     return top + count;
 }
 
+/// Boxes that one group alone meets, one bit each.
+static inline uint boxes_of_one_group(uint mask) {
+    const uint either = mask | mask >> 16, both = mask & mask >> 16;
+    const uint any = either | either >> 8, several = both | both >> 8 | (either & either >> 8);
+    return any & ~several & 0xffu;
+}
+
+static inline uint leaves_of(global const BvhNode* node) {
+    return lane_mask(as_int8(aligned8((global const float*)node->child)) < 0);
+}
+
+/// Finds which rays meet each child, and leaves out the groups that none of meets it. Of a pinhole's rays all may, but at
+/// leaves that one group alone meets.
+static inline uint rays_meeting_children(const Packet* p, global const BvhNode* node, uint mask, ulong* rays) {
+    uint counted = 0xffu;
+    vstore8((ulong8)(p->is_pinhole ? ~0ul : 0ul), 0, rays);
+    if (p->is_pinhole) {
+        counted = boxes_of_one_group(mask) & leaves_of(node);
+        for (uint rest = counted; rest != 0; rest &= rest - 1) rays[lowest_bit(rest)] = 0;
+    }
+    for (uint rest = mask & counted * 0x01010101u; rest != 0; rest &= rest - 1) {
+        const uint bit = lowest_bit(rest), lane = bit % BVH_WIDTH, group = bit / BVH_WIDTH;
+        const uint meeting = rays_meeting(p, node, lane, group);
+        if (meeting == 0) mask &= ~(1u << bit);
+        rays[lane] |= (ulong)meeting << GROUP * group;
+    }
+    return mask;
+}
+
 /// Tests each group's rays against those triangles of a block that its beam meets. First which triangles some line of a
 /// group passes through, for all of them without a branch, since no processor foresees it; then the few that are left.
 static inline bool visit_triangles_groups(Packet* p, global const TriangleBlock* block, uint groups, bool any_hit) {
@@ -259,9 +291,14 @@ static void traverse_packet(const Geometry* geometry, Packet* p, bool any_hit) {
         const ulong item = stack[--top];
         const uint distance = (uint)(item >> 32), child = (uint)item;
         if (as_float(distance & ~(7u | ALL_GROUPS << ENTRY_GROUPS_SHIFT)) > p->farthest_of_all) continue;
-        if (popcount(stack_rays[top]) < FEWEST_TOGETHER) {
+        const ulong rays_here = stack_rays[top];
+        if (p->is_pinhole && popcount(rays_here) <= FEW_OF_PINHOLE) {
+            if (stream_visit_leaf(&p->rays, geometry, child, rays_here, true, any_hit)) update_farthest(p);
+            continue;
+        }
+        if (!p->is_pinhole && popcount(rays_here) < FEWEST_TOGETHER) {
             handed[count].child = child;
-            handed[count].rays = stack_rays[top];
+            handed[count].rays = rays_here;
             count += 1;
             if (count < (any_hit ? HANDED_TOGETHER : 1)) continue;
             if (stream_below(geometry, &p->rays, handed, count, any_hit, &sharing)) update_farthest(p);
@@ -274,15 +311,9 @@ static void traverse_packet(const Geometry* geometry, Packet* p, bool any_hit) {
         if (!(child & CHILD_LEAF)) {
             global const BvhNode* node = geometry->nodes + child;
             float8 entry;
+            ulong rays[BVH_WIDTH];
             uint mask = groups_meeting_children(p, node, &entry) & spread_groups(groups);
-            ulong rays[BVH_WIDTH];  // that meet each child
-            vstore8((ulong8)(p->is_pinhole ? ~0ul : 0ul), 0, rays);
-            for (uint rest = p->is_pinhole ? 0u : mask; rest != 0; rest &= rest - 1) {
-                const uint bit = lowest_bit(rest), lane = bit % BVH_WIDTH, group = bit / BVH_WIDTH;
-                const uint meeting = rays_meeting(p, node, lane, group);
-                if (meeting == 0) mask &= ~(1u << bit);
-                rays[lane] |= (ulong)meeting << GROUP * group;
-            }
+            mask = rays_meeting_children(p, node, mask, rays);
             top = push_groups(geometry, node->child, mask, entry, rays, stack, stack_rays, top);
             continue;
         }
