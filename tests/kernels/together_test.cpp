@@ -11,14 +11,17 @@
 namespace raymill::test {
 namespace {
 
-// Rays of a chunk that start close together and go to points at most this far apart; the others go anywhere.
+// Rays of a chunk that start at most so far apart and go to points at most this far apart; the others go anywhere.
 struct Bundle {
     int close;
-    float spread;
+    float apart = 0;
+    float spread = 0;
 };
 
-// One packet; one that comes apart; two octants or more; some strays beside a packet; strays alone.
-const Bundle BUNDLES[] = {{CHUNK, 0.02f}, {CHUNK, 0.3f}, {CHUNK, 1.0f}, {40, 0.05f}, {24, 0.2f}, {0, 0.0f}};
+// One packet; one that comes apart; two octants or more; some strays beside a packet; strays alone; pinholes.
+const Bundle BUNDLES[] = {{CHUNK, 0.01f, 0.02f}, {CHUNK, 0.01f, 0.3f}, {CHUNK, 0.01f, 1},
+                          {40, 0.01f, 0.05f},    {24, 0.01f, 0.2f},    {0},
+                          {CHUNK, 0, 0.3f},      {40, 0, 0.05f}};
 
 /// Whole chunks of every bundle; the last one is not full.
 template <class Item, class Make>
@@ -30,7 +33,7 @@ std::vector<Item> bundles(std::size_t rounds, std::uint32_t seed, const Make& ma
             const glm::vec3 eye = random.in_cube(-0.5f, 1.5f), target = random.in_cube(0, 1);
             for (int i = 0; i < CHUNK; ++i) {
                 const bool is_close = i < bundle.close;
-                const glm::vec3 from = is_close ? eye + random.in_cube(0, 0.01f) : random.in_cube(-0.5f, 1.5f);
+                const glm::vec3 from = is_close ? eye + random.in_cube(0, bundle.apart) : random.in_cube(-0.5f, 1.5f);
                 const glm::vec3 to = is_close ? target + random.in_cube(0, bundle.spread) : random.in_cube(0, 1);
                 items.push_back(make(from, to, static_cast<uint>(items.size())));
             }
