@@ -224,6 +224,7 @@ static inline uint boxes_of_one_group(uint mask) {
     return any & ~several & 0xffu;
 }
 
+/// Children that are leaves, one bit each.
 static inline uint leaves_of(global const BvhNode* node) {
     return lane_mask(as_int8(aligned8((global const float*)node->child)) < 0);
 }
