@@ -13,8 +13,8 @@
 // Directions that differ by more than this on an axis share too few nodes to be worth it.
 #define COHERENT_SPREAD 0.4f
 #define FEWEST_TOGETHER 24  // rays of a packet, and of those that meet a child: fewer go on as a stream
-// Of a pinhole's rays only these leave the packet, at a leaf, and at once: they go the same way all the same, so that most
-// visits are not worth counting for.
+// Of a pinhole's rays only so few leave the packet, at a leaf, and at once: they go the same way all the same, and at most
+// visits it does not pay to count them.
 #define FEW_OF_PINHOLE 4
 
 // Children that a stream begins with where any hit will do: with one it would wait for that one's memory. Closest hits
