@@ -26,7 +26,7 @@ typedef struct {
     float waist, side;
     uint axis[3];  // of the triangle frame: x, y, z
     uint sign[3];  // of the slab frame
-    bool is_pinhole;  // all rays start at one point: beams tell as much as rays
+    bool is_pinhole;  // all rays start at one point: beams tell nearly as much as rays
 } Packet;
 
 // Halves of vectors are taken through pointers and lanes are named one by one: Oclgrind 21.10 reads beyond its record of
