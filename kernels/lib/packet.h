@@ -13,8 +13,8 @@
 // Directions that differ by more than this on an axis share too few nodes to be worth it.
 #define COHERENT_SPREAD 0.4f
 #define FEWEST_TOGETHER 24  // rays of a packet, and of those that meet a child: fewer go on as a stream
-// Of a pinhole's rays only so few leave the packet, at a leaf, and at once: they go the same way all the same, and at most
-// visits it does not pay to count them.
+// Of a pinhole's rays only so few leave the packet, at a leaf, and at once: they go the same way all the same, and at
+// most visits it does not pay to count them.
 #define FEW_OF_PINHOLE 4
 
 // Children that a stream begins with where any hit will do: with one it would wait for that one's memory. Closest hits
@@ -229,8 +229,8 @@ static inline uint leaves_of(global const BvhNode* node) {
     return lane_mask(as_int8(aligned8((global const float*)node->child)) < 0);
 }
 
-/// Finds which rays meet each child, and leaves out the groups that none of meets it. Of a pinhole's rays all may, but at
-/// leaves that one group alone meets.
+/// Finds which rays meet each child, and leaves out the groups that none of meets it. Of a pinhole's rays all may, but
+/// at leaves that one group alone meets.
 static inline uint rays_meeting_children(const Packet* p, global const BvhNode* node, uint mask, ulong* rays) {
     uint counted = 0xffu;
     vstore8((ulong8)(p->is_pinhole ? ~0ul : 0ul), 0, rays);
