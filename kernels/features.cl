@@ -18,10 +18,7 @@ static inline Lanes3 albedo(const World* world, const Shading* s) {
 /// Adds one of these to each camera hit.
 static inline uint add_feature(const Film* film, uint plane, const Shading* s, Lanes3 value, float16 fourth) {
     const Rows rows = rows_of(value, fourth);
-    uint atomics = 0;
-    for (uint lane = 0; lane < s->hits.count; ++lane)
-        atomics += film_add(film, plane, ((const uint*)&s->hits.pixel)[lane], row_of(&rows, lane));
-    return atomics;
+    return film_add_values(film, plane, (const uint*)&s->hits.pixel, &rows, first_lanes(s->hits.count));
 }
 
 /// Objects and materials are those of sample 0.

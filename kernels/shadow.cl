@@ -27,12 +27,6 @@ static inline float3 light_left(const Geometry* geometry, const World* world, gl
     return transmittance(geometry, world, load3(ray->origin), load3(ray->direction), ray->t_max);
 }
 
-/// The shadow plane holds what is left of the light where the camera looks.
-static inline uint add_shadow(const Film* film, global const ShadowRay* ray, float3 left) {
-    if (ray->route != ROUTE_CAMERA || !film_keeps(film, FILM_SHADOW)) return 0;
-    return film_add(film, FILM_SHADOW, ray->pixel, (float4)(left, 1.0f));
-}
-
 /// One work-item a segment, or one ray where rays are traced alone.
 kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shadow_counts, uint segment_count,
                    global const BvhNode* nodes, global const TriangleBlock* triangle_blocks,
@@ -57,22 +51,25 @@ kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shado
         global const ShadowRay* some = rays + begin;
         Terms terms;
         load_terms(some, min((uint)LANES, count - begin), &terms);
-        const uint lanes = terms.lanes, hindered = (uint)(in_the_way >> begin) & lanes;
-        for (uint rest = hindered; rest != 0; rest &= rest - 1) {
+        // What is left of the light, and a count: the shadow plane's, where the camera looks.
+        Rows arriving = {{(float16)(1.0f), (float16)(1.0f), (float16)(1.0f), (float16)(1.0f)}};
+        const uint lanes = terms.lanes;
+        for (uint rest = (uint)(in_the_way >> begin) & lanes; rest != 0; rest &= rest - 1) {
             const uint lane = lowest_bit(rest);
-            const float3 left = light_left(&geometry, &world, some + lane, blockers[begin + lane]);
-            atomics += add_shadow(&film, some + lane, left);
-            if (any(left != 0.0f)) {
-                ((float4*)&terms.first)[lane] *= (float4)(left, 0.0f);
-                ((float4*)&terms.second)[lane] *= (float4)(left, 0.0f);
+            const float4 left = (float4)(light_left(&geometry, &world, some + lane, blockers[begin + lane]), 1.0f);
+            ((float4*)&arriving)[lane] = left;
+            if (any(left.xyz != 0.0f)) {
+                ((float4*)&terms.first)[lane] *= left;
+                ((float4*)&terms.second)[lane] *= left;
             } else {
                 terms.lanes &= ~(1u << lane);
                 ++blocked;
             }
         }
-        if (film_keeps(&film, FILM_SHADOW))
-            for (uint rest = lanes & ~hindered; rest != 0; rest &= rest - 1)
-                atomics += add_shadow(&film, some + lowest_bit(rest), (float3)(1.0f));
+        if (film_keeps(&film, FILM_SHADOW)) {
+            const uint seen = lanes & lanes_of_route(terms.route, ROUTE_CAMERA);
+            atomics += film_add_values(&film, FILM_SHADOW, terms.pixel, &arriving, seen);
+        }
         atomics += film_add_terms(&film, FILM_DIFFUSE, FILM_SPECULAR, &terms);
     }
     atomics += film_count(&counters->shadow_traced, count);

@@ -6,14 +6,14 @@
 
 /// A place in the order of camera samples: whole tiles of TILE x TILE pixels row by row, then those that are left at
 /// the right edge from top to bottom, then those at the bottom from left to right, as wide and high as there is room;
-/// none is padded. In a tile the samples come one after the other, each with all its pixels, in a whole tile in
-/// Z-order. So 64 rays in a row are neighbours, and sixteen are closer ones; and narrow tiles do not put the whole ones
-/// out of step with the chunks.
+/// none is padded. In a tile the pixels come one after the other, each with all its samples, in a whole tile in Z-order.
+/// So rays in a row are neighbours, of one pixel as often as not, whose light film_add_terms() then adds at once; and
+/// narrow tiles do not put the whole ones out of step with the chunks.
 typedef struct {
     uint tile_x, tile_y;  // first pixel of the tile, in the rendered window
     uint columns, rows;   // of the tile
+    uint place;           // of the pixel in the tile
     uint sample;          // in [0, spp)
-    uint row, column;     // in the tile
 } CameraCursor;
 
 static inline void set_tile(CameraCursor* c, constant CameraRecord* camera, uint x, uint y) {
@@ -38,7 +38,7 @@ static inline CameraCursor camera_cursor(ulong index, constant CameraRecord* cam
     const ulong right = (ulong)(across * TILE) * (down * TILE) * spp;  // the first sample at the right edge
     const ulong bottom = right + (ulong)columns * (down * TILE) * spp;
     CameraCursor c;
-    uint in_tile, in_sample;
+    uint in_tile;
     if (index < right) {
         const uint tile = divide(index, TILE * TILE * spp, &in_tile);
         set_tile(&c, camera, tile % across * TILE, tile / across * TILE);
@@ -49,8 +49,7 @@ static inline CameraCursor camera_cursor(ulong index, constant CameraRecord* cam
         const uint tile = divide(index - bottom, TILE * rows * spp, &in_tile);
         set_tile(&c, camera, tile * TILE, down * TILE);
     }
-    c.sample = divide(in_tile, c.columns * c.rows, &in_sample);
-    c.row = divide(in_sample, c.columns, &c.column);
+    c.place = divide(in_tile, spp, &c.sample);
     return c;
 }
 
@@ -79,12 +78,10 @@ static inline void next_tile(CameraCursor* c, constant CameraRecord* camera) {
 
 /// The next sample. Past the last one it means nothing.
 static inline void camera_step(CameraCursor* c, constant CameraRecord* camera) {
-    if (++c->column < c->columns) return;
-    c->column = 0;
-    if (++c->row < c->rows) return;
-    c->row = 0;
     if (++c->sample < camera->spp) return;
     c->sample = 0;
+    if (++c->place < c->columns * c->rows) return;
+    c->place = 0;
     next_tile(c, camera);
 }
 
@@ -101,14 +98,17 @@ static inline uint16 every_other_bit(uint16 place) { return (place & 1u) | (plac
 
 /// Takes the next samples, which lie in one whole tile.
 static inline void samples_of_tile(CameraCursor* cursor, constant CameraRecord* camera, CameraSamples* s) {
-    const uint first = cursor->row * TILE + cursor->column;
-    const uint16 place = first + (uint16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    const uint spp = camera->spp;
+    const uint16 sample = cursor->sample + (uint16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    // sample / spp: at most 1 if a pixel has sixteen samples and more; else of a number below 32, where 16 bits of the
+    // reciprocal, rounded up, will do.
+    const uint16 pixels = spp < LANES ? sample * (65536 / spp + 1) >> 16 : as_uint16(sample >= spp) & 1u;
+    const uint16 place = cursor->place + pixels;
     s->x = cursor->tile_x + every_other_bit(place);
     s->y = cursor->tile_y + every_other_bit(place >> 1);
-    s->sample = (uint16)(cursor->sample);
-    const uint last = first + LANES - 1;
-    cursor->row = last / TILE;
-    cursor->column = last % TILE;
+    s->sample = sample - pixels * spp;
+    cursor->place = place.sf;
+    cursor->sample = s->sample.sf;
     camera_step(cursor, camera);
 }
 
@@ -117,9 +117,9 @@ static inline void samples_of_tiles(CameraCursor* cursor, constant CameraRecord*
     uint x[LANES], y[LANES], sample[LANES];
     for (uint lane = 0; lane < LANES; ++lane) {
         const bool whole = cursor->columns * cursor->rows == TILE * TILE;
-        const uint16 place = (uint16)(cursor->row * TILE + cursor->column);
-        x[lane] = cursor->tile_x + (whole ? every_other_bit(place).s0 : cursor->column);
-        y[lane] = cursor->tile_y + (whole ? every_other_bit(place >> 1).s0 : cursor->row);
+        const uint16 place = (uint16)(cursor->place);
+        x[lane] = cursor->tile_x + (whole ? every_other_bit(place).s0 : cursor->place % cursor->columns);
+        y[lane] = cursor->tile_y + (whole ? every_other_bit(place >> 1).s0 : cursor->place / cursor->columns);
         sample[lane] = cursor->sample;
         camera_step(cursor, camera);
     }
@@ -130,8 +130,8 @@ static inline void samples_of_tiles(CameraCursor* cursor, constant CameraRecord*
 
 /// Takes the next samples. A lane may lie past the last sample: its ray is not to be used.
 COMPILED_ONCE static void camera_samples(CameraCursor* cursor, constant CameraRecord* camera, CameraSamples* s) {
-    const uint place = cursor->row * TILE + cursor->column;
-    if (cursor->columns * cursor->rows == TILE * TILE && place + LANES <= TILE * TILE)
+    const uint left = (TILE * TILE - cursor->place) * camera->spp - cursor->sample;  // in a whole tile
+    if (cursor->columns * cursor->rows == TILE * TILE && left >= LANES)
         samples_of_tile(cursor, camera, s);
     else
         samples_of_tiles(cursor, camera, s);

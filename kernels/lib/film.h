@@ -68,13 +68,6 @@ static inline long16 film_units(const Film* film, float16 value) {
     return convert_long16((value + whole) - whole);
 }
 
-static inline long4 film_units4(const Film* film, float4 value) {
-    float16 row = (float16)(0.0f);
-    *(float4*)&row = value;
-    const long16 units = film_units(film, row);
-    return *(const long4*)&units;
-}
-
 static inline uint film_add_units(const Film* film, global long* sum, long units) {
     if (units == 0) return 0;
     const bool plain = (film->flags & FILM_PIXELS_ONCE) != 0;
@@ -114,16 +107,6 @@ static inline uint film_add_units4(const Film* film, global long* sum, long4 uni
     return atomics + film_add_units(film, sum + 3, units.w);
 }
 
-static inline uint film_add(const Film* film, uint plane, uint pixel, float4 value) {
-    return film_add_units4(film, film_pixel(film, plane, pixel), film_units4(film, value));
-}
-
-/// The plane that light of this kind belongs to: `term` for camera hits, else that of the branch which the path took
-/// first.
-static inline uint film_plane(uint term, uint route) {
-    return route == ROUTE_CAMERA ? term : route == ROUTE_REFLECTED ? FILM_REFLECTION : FILM_REFRACTION;
-}
-
 /// Radiance of two terms for each of up to LANES items: rows of three channels, and a fourth that is not read.
 typedef struct {
     uint lanes;  // with an item, one bit each
@@ -131,45 +114,83 @@ typedef struct {
     Rows first, second;
 } Terms;
 
-/// Four rows' channels in units of the film; nothing for rows without an item, of which `lanes` has no bit.
-static inline long16 film_units_of_rows(const Film* film, float16 rows, uint lanes) {
-    const uint16 channel = (uint16)(1, 1, 1, 0, 2, 2, 2, 0, 4, 4, 4, 0, 8, 8, 8, 0);
-    return film_units(film, select((float16)(0.0f), rows, ((uint16)(lanes) & channel) != 0u));
-}
+/// Rows in units of the film, 16 at most, so that their sum is one of 64 bits.
+typedef union {
+    long16 part[4];
+    long4 row[LANES];
+} UnitRows;
 
-/// Adds the radiance of two terms. The beauty gets the sum of their integers, so that the planes still add up to it.
-COMPILED_ONCE static uint film_add_terms(const Film* film, uint first_term, uint second_term, const Terms* terms) {
-    union {
-        long16 part[4];
-        long4 row[LANES];
-    } first, both;
-    for (uint i = 0; i < 4; ++i) {
-        first.part[i] = film_units_of_rows(film, terms->first.part[i], terms->lanes >> 4 * i);
-        both.part[i] = first.part[i] + film_units_of_rows(film, terms->second.part[i], terms->lanes >> 4 * i);
-    }
-    const bool by_term = film_keeps(film, first_term) || film_keeps(film, second_term) ||
-                         film_keeps(film, FILM_REFLECTION) || film_keeps(film, FILM_REFRACTION);
-    if (!by_term && (film->flags & FILM_PIXELS_ONCE)) {
+/// Adds the rows of `lanes` to their pixels in a plane; nothing where it is not kept. Neighbours of one pixel, as a
+/// camera's samples are, are added up before.
+COMPILED_ONCE static uint film_add_rows(const Film* film, uint plane, const uint* pixels, const UnitRows* rows,
+                                        uint lanes) {
+    if (lanes == 0 || (plane != FILM_BEAUTY && !film_keeps(film, plane))) return 0;
+    global long* sums = film_pixel(film, plane, 0);
+    if (film->flags & FILM_PIXELS_ONCE) {
         long4 overflow = (long4)(0);
-        for (uint rest = terms->lanes; rest != 0; rest &= rest - 1) {
-            const uint i = lowest_bit(rest);
-            overflow += film_add_alone(film_pixel(film, FILM_BEAUTY, terms->pixel[i]), both.row[i]);
+        for (; lanes != 0; lanes &= lanes - 1) {
+            const uint i = lowest_bit(lanes);
+            overflow += film_add_alone(sums + (ulong)pixels[i] * FILM_CHANNELS, rows->row[i]);
         }
         film_count_overflow(film, overflow);
         return 0;
     }
-    uint atomics = 0;
-    for (uint rest = terms->lanes; rest != 0; rest &= rest - 1) {
-        const uint i = lowest_bit(rest), pixel = terms->pixel[i];
-        atomics += film_add_units4(film, film_pixel(film, FILM_BEAUTY, pixel), both.row[i]);
-        if (!by_term) continue;
-        const uint plane_a = film_plane(first_term, terms->route[i]),
-                   plane_b = film_plane(second_term, terms->route[i]);
-        if (film_keeps(film, plane_a)) atomics += film_add_units4(film, film_pixel(film, plane_a, pixel), first.row[i]);
-        if (film_keeps(film, plane_b))
-            atomics += film_add_units4(film, film_pixel(film, plane_b, pixel), both.row[i] - first.row[i]);
+    uint atomics = 0, pixel = pixels[lowest_bit(lanes)];
+    long4 sum = (long4)(0);
+    for (; lanes != 0; lanes &= lanes - 1) {
+        const uint i = lowest_bit(lanes);
+        if (pixels[i] != pixel) {
+            atomics += film_add_units4(film, sums + (ulong)pixel * FILM_CHANNELS, sum);
+            pixel = pixels[i];
+            sum = (long4)(0);
+        }
+        sum += rows->row[i];
     }
-    return atomics;
+    return atomics + film_add_units4(film, sums + (ulong)pixel * FILM_CHANNELS, sum);
+}
+
+/// Rows' first channels, three or four of them, in units of the film; nothing for rows without an item, of which
+/// `lanes` has no bit.
+static inline UnitRows film_units_of_rows(const Film* film, const Rows* rows, uint channels, uint lanes) {
+    const uint16 row = (uint16)(1, 1, 1, 1, 2, 2, 2, 2, 4, 4, 4, 4, 8, 8, 8, 8);
+    const uint16 channel = (uint16)(0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3);
+    UnitRows units;
+    for (uint i = 0; i < 4; ++i) {
+        const int16 there = (((uint16)(lanes >> 4 * i) & row) != 0u) & (channel < channels);
+        units.part[i] = film_units(film, select((float16)(0.0f), rows->part[i], there));
+    }
+    return units;
+}
+
+/// Adds rows of four channels.
+COMPILED_ONCE static uint film_add_values(const Film* film, uint plane, const uint* pixels, const Rows* rows,
+                                          uint lanes) {
+    const UnitRows units = film_units_of_rows(film, rows, 4, lanes);
+    return film_add_rows(film, plane, pixels, &units, lanes);
+}
+
+/// Those of sixteen rays that go this way, one bit each.
+static inline uint lanes_of_route(const uint* routes, uint route) {
+    return lane_mask16(vload16(0, routes) == route);
+}
+
+/// Adds the radiance of two terms. The beauty gets the sum of their integers, so that the planes still add up to it.
+/// What camera hits send goes to the terms' own planes, the rest to that of the branch which the path took first.
+COMPILED_ONCE static uint film_add_terms(const Film* film, uint first_term, uint second_term, const Terms* terms) {
+    const UnitRows first = film_units_of_rows(film, &terms->first, 3, terms->lanes);
+    const UnitRows second = film_units_of_rows(film, &terms->second, 3, terms->lanes);
+    UnitRows both;
+    for (uint i = 0; i < 4; ++i) both.part[i] = first.part[i] + second.part[i];
+    uint atomics = film_add_rows(film, FILM_BEAUTY, terms->pixel, &both, terms->lanes);
+    if (!(film_keeps(film, first_term) || film_keeps(film, second_term) || film_keeps(film, FILM_REFLECTION) ||
+          film_keeps(film, FILM_REFRACTION)))
+        return atomics;
+    const uint camera = lanes_of_route(terms->route, ROUTE_CAMERA) & terms->lanes;
+    const uint reflected = lanes_of_route(terms->route, ROUTE_REFLECTED) & terms->lanes;
+    atomics += film_add_rows(film, first_term, terms->pixel, &first, camera);
+    atomics += film_add_rows(film, second_term, terms->pixel, &second, camera);
+    atomics += film_add_rows(film, FILM_REFLECTION, terms->pixel, &both, reflected);
+    return atomics + film_add_rows(film, FILM_REFRACTION, terms->pixel, &both, terms->lanes & ~camera & ~reflected);
 }
 
 #endif

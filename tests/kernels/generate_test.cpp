@@ -61,27 +61,23 @@ struct Sample {
     uint sample;
 };
 
-/// The pixels of a whole tile: quarter by quarter (top left, top right, bottom left, bottom right), and these so again.
-void add_quarters(int left, int top, int edge, uint sample, std::vector<Sample>& order) {
-    if (edge == 1) {
-        order.push_back({left, top, sample});
-        return;
-    }
-    const int half = edge / 2;
-    for (const int y : {top, top + half})
-        for (const int x : {left, left + half}) add_quarters(x, y, half, sample, order);
+void add_pixel(int x, int y, int spp, std::vector<Sample>& order) {
+    for (int sample = 0; sample < spp; ++sample) order.push_back({x, y, static_cast<uint>(sample)});
 }
 
-/// The pixels of one tile: samples after each other, pixels of a sample.
+/// The pixels of a whole tile: quarter by quarter (top left, top right, bottom left, bottom right), and these so again.
+void add_quarters(int left, int top, int edge, int spp, std::vector<Sample>& order) {
+    if (edge == 1) return add_pixel(left, top, spp, order);
+    const int half = edge / 2;
+    for (const int y : {top, top + half})
+        for (const int x : {left, left + half}) add_quarters(x, y, half, spp, order);
+}
+
+/// The pixels of one tile, each with all its samples.
 void add_tile(int left, int top, int width, int height, int spp, std::vector<Sample>& order) {
-    for (int sample = 0; sample < spp; ++sample) {
-        if (width == TILE && height == TILE) {
-            add_quarters(left, top, TILE, static_cast<uint>(sample), order);
-            continue;
-        }
-        for (int y = top; y < top + height; ++y)
-            for (int x = left; x < left + width; ++x) order.push_back({x, y, static_cast<uint>(sample)});
-    }
+    if (width == TILE && height == TILE) return add_quarters(left, top, TILE, spp, order);
+    for (int y = top; y < top + height; ++y)
+        for (int x = left; x < left + width; ++x) add_pixel(x, y, spp, order);
 }
 
 /// The order that the kernel documents, spelt out: whole tiles row by row, what is left at the right, then at the

@@ -36,8 +36,8 @@ const PlantedBug bugs[] = {
      "secondary"},
     {"children_share_a_path", "secondary.cl", "path_child(hits->path, branch)", "path_child(hits->path, 0)",
      "secondary"},
-    {"green_counted_as_red", "lib/film.h", "FILM_BEAUTY, pixel), both.row[i])",
-     "FILM_BEAUTY, pixel), both.row[i].xxzw)", "film"},
+    {"green_counted_as_red", "lib/film.h", "first.part[i] + second.part[i];",
+     "(first.part[i] + second.part[i]).s0023446788abccef;", "film"},
 };
 
 class Planted : public testing::TestWithParam<PlantedBug> {};
