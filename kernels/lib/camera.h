@@ -7,8 +7,8 @@
 /// A place in the order of camera samples: whole tiles of TILE x TILE pixels row by row, then those that are left at
 /// the right edge from top to bottom, then those at the bottom from left to right, as wide and high as there is room;
 /// none is padded. In a tile the pixels come one after the other, each with all its samples, in a whole tile in Z-order.
-/// So rays in a row are neighbours, of one pixel as often as not, whose light film_add_terms() then adds at once; and
-/// narrow tiles do not put the whole ones out of step with the chunks.
+/// So 64 rays in a row are neighbours, and sixteen are closer ones, the closer the more samples a pixel has; the film
+/// adds those of one pixel at once; and narrow tiles do not put the whole ones out of step with the chunks.
 typedef struct {
     uint tile_x, tile_y;  // first pixel of the tile, in the rendered window
     uint columns, rows;   // of the tile

@@ -60,6 +60,26 @@ TEST(Film, only_camera_rays_that_hit_count_as_coverage) {
     }
 }
 
+TEST(Film, coverage_counts_the_hits_of_a_pixel_s_samples) {
+    Scene scene = nothing_but_background();
+    add_sphere(scene, {0, 0, 5}, 1);
+    Random random(4);
+    std::vector<Ray> rays;
+    std::vector<std::int64_t> expected(21, 0);
+    for (const uint samples : {3u, 1u, 70u, 16u, 40u, 2u}) {
+        const uint pixel = random.below(20);
+        for (uint i = 0; i < samples; ++i) {
+            const bool hits = random.below(3) > 0;
+            rays.push_back(make_ray({0, 0, 0}, {0, 0, hits ? 1.0f : -1.0f}, pixel));
+            if (hits) expected[pixel] += FILM_ONE;
+        }
+    }
+    rays.push_back(make_ray({0, 0, 0}, {0, 0, -1}, 20));
+    const IntersectResult result = KernelRig(scene).intersect(rays);
+    for (uint pixel = 0; pixel < expected.size(); ++pixel)
+        EXPECT_EQ(result.film.at(pixel, 3), expected[pixel]) << pixel;
+}
+
 TEST(Film, what_is_not_a_number_is_left_out_and_counted) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const std::vector<Ray> rays = {weighing(nan, 0), weighing(1, 0), weighing(nan, 1)};

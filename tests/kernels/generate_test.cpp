@@ -33,8 +33,10 @@ const View views[] = {
     {"one_column", Projection::perspective, 0, 1, 19, 4, {}},
     {"thin_lens", Projection::perspective, 0.3, 37, 21, 7, {}},
     {"thin_lens_of_one_sample", Projection::perspective, 0.3, 33, 9, 1, {}},
+    {"sixteen_samples", Projection::perspective, 0.1, 37, 21, 16, {}},
+    {"more_than_sixteen_samples", Projection::perspective, 0.1, 21, 19, 25, {}},
     {"orthographic", Projection::orthographic, 0, 40, 31, 4, {}},
-    {"orthographic_with_lens", Projection::orthographic, 0.2, 31, 40, 4, {}},
+    {"orthographic_with_lens", Projection::orthographic, 0.2, 31, 40, 15, {}},
     {"crop", Projection::perspective, 0, 100, 80, 4, {0.13, 0.62, 0.31, 0.9}},
     {"crop_of_one_pixel", Projection::perspective, 0.1, 64, 64, 7, {0.5, 0.515, 0.25, 0.265}},
 };

@@ -86,12 +86,12 @@ Film cleared_film(std::size_t pixels) {
     return film;
 }
 
-/// A cleared film for every pixel that the items name.
+/// As many pixels as the items name.
 template <class Item>
-Film film_for(std::span<const Item> items) {
+std::size_t pixels_of(std::span<const Item> items) {
     std::size_t pixels = 1;
     for (const Item& item : items) pixels = std::max<std::size_t>(pixels, item.pixel + 1);
-    return cleared_film(pixels);
+    return pixels;
 }
 
 FilmState read(const Film& film) {
@@ -107,9 +107,14 @@ struct KernelRig::Parts {
 
     Bvh bvh;  // the scene may share its memory
     DeviceScene scene;
-    std::size_t film_pixels;  // of all planes
+    std::size_t film_pixels;  // of all planes; 0: as many as the queue's items name
     Traversal traversal = Traversal::automatic;
     std::string folder;  // of the kernels
+
+    template <class Item>
+    Film film_for(std::span<const Item> items) const {
+        return cleared_film(film_pixels > 0 ? film_pixels : pixels_of(items));
+    }
 };
 
 KernelRig::KernelRig(const Scene& scene)
@@ -141,7 +146,7 @@ IntersectResult KernelRig::intersect(std::span<const Ray> rays, uint first, bool
     const uint count = static_cast<uint>(rays.size()) - first;
     const Buffer<Ray> queue = filled(rays);
     Buffer<Hit> hits = guarded<Hit>(count);
-    Film film = film_for(rays);
+    Film film = parts_->film_for(rays);
     film.pixels_once = pixels_once;
     for (int launch = 0; launch < launches; ++launch)
         stages(parts_->traversal, parts_->folder).intersect(parts_->scene, {queue, first, count}, hits, film);
@@ -154,7 +159,7 @@ ShadeResult KernelRig::shade(std::span<const Ray> rays, std::span<const Hit> hit
     const Buffer<Hit> hit_queue = filled(hits);
     const std::size_t segments = std::size_t{Stages::chunks(static_cast<uint>(hits.size()))} * slot_count;
     ShadowQueue shadow{guarded<ShadowRay>(segments * CHUNK), guarded<uint>(segments)};
-    Film film = film_for(rays);
+    Film film = parts_->film_for(rays);
     stages().shade(parts_->scene, {queue, first, static_cast<uint>(hits.size())}, hit_queue, {first_slot, slot_count},
                    shadow, film);
     return {shadow.rays.read(device()), shadow.counts.read(device()), read(film)};
@@ -163,14 +168,14 @@ ShadeResult KernelRig::shade(std::span<const Ray> rays, std::span<const Hit> hit
 FilmState KernelRig::features(std::span<const Ray> rays, std::span<const Hit> hits, uint depth, uint first) const {
     const Buffer<Ray> queue = filled(rays);
     const Buffer<Hit> hit_queue = filled(hits);
-    Film film = cleared_film(parts_->film_pixels);
+    Film film = parts_->film_for(rays);
     stages().features(parts_->scene, {queue, first, static_cast<uint>(hits.size())}, depth, hit_queue, film);
     return read(film);
 }
 
 FilmState KernelRig::shadow(std::span<const ShadowRay> rays, std::span<const uint> counts, bool pixels_once) const {
     const ShadowQueue queue{filled(rays), filled(counts)};
-    Film film = film_for(rays);
+    Film film = parts_->film_for(rays);
     film.pixels_once = pixels_once;
     stages(parts_->traversal, parts_->folder).shadow(parts_->scene, queue, static_cast<uint>(counts.size()), film);
     return read(film);
@@ -182,7 +187,7 @@ SecondaryResult KernelRig::secondary(std::span<const Ray> rays, std::span<const 
     const Buffer<Hit> hit_queue = filled(hits);
     const Buffer<Ray> children = guarded<Ray>(capacity);
     Buffer<Ray> within = children.first(capacity);
-    Film film = film_for(rays);
+    Film film = parts_->film_for(rays);
     stages().secondary(parts_->scene, {queue, first, static_cast<uint>(hits.size())}, hit_queue, {within}, film);
     return {children.read(device()), read(film)};
 }

@@ -72,7 +72,7 @@ class KernelRig {
   public:
     explicit KernelRig(const Scene& scene);
     KernelRig(const Scene& scene, const Bvh& bvh);
-    /// With planes beside the beauty, which `features` adds to.
+    /// With planes beside the beauty. The film has all of them, each of the scene's whole image.
     KernelRig(const Scene& scene, const FilmPlanes& planes);
     ~KernelRig();
 
@@ -86,7 +86,7 @@ class KernelRig {
     /// hits[i] belongs to rays[first + i].
     ShadeResult shade(std::span<const Ray> rays, std::span<const Hit> hits, uint first_slot, uint slot_count,
                       uint first = 0) const;
-    /// hits[i] belongs to rays[first + i]. The film has all kept planes, each of the scene's whole image.
+    /// hits[i] belongs to rays[first + i].
     FilmState features(std::span<const Ray> rays, std::span<const Hit> hits, uint depth, uint first = 0) const;
     /// rays: CHUNK for each of the counts. pixels_once: no two of them share a pixel.
     FilmState shadow(std::span<const ShadowRay> rays, std::span<const uint> counts, bool pixels_once = false) const;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <vector>
 
@@ -258,6 +259,81 @@ TEST(Shadow, plain_adds_make_the_sums_and_counts_of_atomic_ones) {
     EXPECT_EQ(atomic.counters.saturated, 1u);
     EXPECT_EQ(plain.sums, atomic.sums);
     EXPECT_TRUE(same_bits(plain.counters, atomic.counters));
+}
+
+/// Shadow rays of a pixel each that keep all planes they add to.
+class ShadowPlanes : public testing::Test {
+  protected:
+    ShadowPlanes() {
+        scene_.settings.width = 80;
+        scene_.settings.height = 60;  // as many pixels as places
+        for (const int plane : kept_) planes_.keep(plane);
+    }
+    /// Where a pixel of a plane begins.
+    std::size_t place(int plane, uint pixel) const {
+        return (planes_.index(plane) * queue_.rays.size() + pixel) * FILM_CHANNELS;
+    }
+
+    const std::array<int, 6> kept_ = {FILM_BEAUTY,     FILM_DIFFUSE,    FILM_SPECULAR,
+                                      FILM_REFLECTION, FILM_REFRACTION, FILM_SHADOW};
+    Scene scene_ = obstacles(ShadowMode::filtered, true);
+    FilmPlanes planes_;
+    const Segments queue_ = random_segments(75, 71);
+};
+
+TEST_F(ShadowPlanes, hold_the_terms_of_camera_rays_what_branches_bring_and_the_light_that_is_left) {
+    const FilmState film = KernelRig(scene_, planes_).shadow(queue_.rays, queue_.counts);
+    std::array<std::size_t, 3> lit{};  // by route
+    for (uint i = 0; i < queue_.rays.size(); ++i) {
+        const ShadowRay& ray = queue_.rays[i];
+        if (i % CHUNK >= queue_.counts[i / CHUNK]) {
+            for (const int plane : kept_)
+                for (int k = 0; k < FILM_CHANNELS; ++k) ASSERT_EQ(film.sums[place(plane, i) + k], 0) << i;
+            continue;
+        }
+        const bool camera = ray.route == ROUTE_CAMERA;
+        ASSERT_EQ(film.sums[place(FILM_SHADOW, i) + 3], camera ? FILM_ONE : 0) << i;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::int64_t beauty = film.sums[place(FILM_BEAUTY, i) + k];
+            const std::int64_t left = film.sums[place(FILM_SHADOW, i) + k];
+            const float share = static_cast<float>(static_cast<double>(left) * 0x1p-32);
+            const std::int64_t diffuse = film_units(share * ray.diffuse[k]);
+            const std::int64_t specular = film_units(share * ray.specular[k]);
+            SCOPED_TRACE(testing::Message() << "ray " << i << ", channel " << k);
+            ASSERT_EQ(film.sums[place(FILM_DIFFUSE, i) + k], diffuse);
+            ASSERT_EQ(film.sums[place(FILM_SPECULAR, i) + k], specular);
+            ASSERT_EQ(film.sums[place(FILM_REFLECTION, i) + k], ray.route == ROUTE_REFLECTED ? beauty : 0);
+            ASSERT_EQ(film.sums[place(FILM_REFRACTION, i) + k], ray.route == ROUTE_REFRACTED ? beauty : 0);
+            if (camera) {
+                ASSERT_EQ(beauty, diffuse + specular);
+            } else {
+                ASSERT_EQ(left, 0);
+            }
+            lit[ray.route] += beauty != 0;
+        }
+    }
+    for (const std::size_t channels : lit) EXPECT_GT(channels, 100u);
+    EXPECT_EQ(film.counters.saturated + film.counters.not_a_number, 0u);
+}
+
+TEST_F(ShadowPlanes, of_neighbours_of_one_pixel_add_up_to_the_last_integer) {
+    const KernelRig rig(scene_, planes_);
+    const FilmState apart = rig.shadow(queue_.rays, queue_.counts);
+    EXPECT_EQ(rig.shadow(queue_.rays, queue_.counts, true).sums, apart.sums);
+    Random random(72);
+    std::vector<ShadowRay> rays = queue_.rays;
+    std::vector<std::int64_t> expected(apart.sums.size(), 0);
+    for (uint i = 0, left = 0, pixel = 0; i < rays.size(); ++i) {
+        if (left-- == 0) {
+            left = random.below(40);  // of samples, more than go to the film at a time
+            pixel = random.below(50);
+        }
+        rays[i].pixel = pixel;
+        for (const int plane : kept_)
+            for (int k = 0; k < FILM_CHANNELS; ++k)
+                expected[place(plane, pixel) + k] += apart.sums[place(plane, i) + k];
+    }
+    EXPECT_EQ(rig.shadow(rays, queue_.counts).sums, expected);
 }
 
 TEST(Shadow, what_a_blocked_ray_would_bring_is_not_looked_at) {
