@@ -38,7 +38,7 @@ kernel void intersect(global const Ray* rays, uint first_ray, uint count, global
     if (begin == 0) counters->children = 0;
     find_hits(&geometry, rays + first_ray + begin, end - begin, hits + begin);
     uint misses[RAYS_A_WORK_ITEM], missed = 0, atomics = 0;
-    uint pixel = 0, covered = 0;  // samples of the pixel that hit something
+    uint pixel = 0, covered = 0;  // how many camera rays of the pixel have hit something, of those in a row
     for (uint i = begin; i < end; ++i) {
         global const Ray* ray = rays + first_ray + i;
         if (hits[i].primitive == NO_INDEX) {

@@ -7,14 +7,15 @@
 #include "lib/trace.h"
 #include "lib/transmittance.h"
 
-/// The terms of up to sixteen rays in a row.
+/// The terms of up to sixteen rays in a row; the last one's again where there are fewer.
 static inline void load_terms(global const ShadowRay* rays, uint count, Terms* terms) {
     terms->lanes = first_lanes(count);
     terms->first = load_rows(rays->diffuse, WORDS(ShadowRay), count);
     terms->second = load_rows(rays->specular, WORDS(ShadowRay), count);
-    for (uint lane = 0; lane < count; ++lane) {
-        terms->pixel[lane] = rays[lane].pixel;
-        terms->route[lane] = rays[lane].route;
+    for (uint lane = 0; lane < LANES; ++lane) {
+        global const ShadowRay* ray = rays + min(lane, count - 1);
+        terms->pixel[lane] = ray->pixel;
+        terms->route[lane] = ray->route;
     }
 }
 
@@ -56,11 +57,11 @@ kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shado
         const uint lanes = terms.lanes;
         for (uint rest = (uint)(in_the_way >> begin) & lanes; rest != 0; rest &= rest - 1) {
             const uint lane = lowest_bit(rest);
-            const float4 left = (float4)(light_left(&geometry, &world, some + lane, blockers[begin + lane]), 1.0f);
-            ((float4*)&arriving)[lane] = left;
-            if (any(left.xyz != 0.0f)) {
-                ((float4*)&terms.first)[lane] *= left;
-                ((float4*)&terms.second)[lane] *= left;
+            const float3 left = light_left(&geometry, &world, some + lane, blockers[begin + lane]);
+            ((float4*)&arriving)[lane] = (float4)(left, 1.0f);
+            if (any(left != 0.0f)) {
+                ((float4*)&terms.first)[lane] *= (float4)(left, 0.0f);
+                ((float4*)&terms.second)[lane] *= (float4)(left, 0.0f);
             } else {
                 terms.lanes &= ~(1u << lane);
                 ++blocked;

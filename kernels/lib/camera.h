@@ -6,9 +6,9 @@
 
 /// A place in the order of camera samples: whole tiles of TILE x TILE pixels row by row, then those that are left at
 /// the right edge from top to bottom, then those at the bottom from left to right, as wide and high as there is room;
-/// none is padded. In a tile the pixels come one after the other, each with all its samples, in a whole tile in Z-order.
-/// So 64 rays in a row are neighbours, and sixteen are closer ones, the closer the more samples a pixel has; the film
-/// adds those of one pixel at once; and narrow tiles do not put the whole ones out of step with the chunks.
+/// none is padded. In a tile the pixels come one after the other, each with all its samples, in a whole tile in
+/// Z-order. So 64 rays in a row are neighbours, and sixteen are closer ones, the closer the more samples a pixel has;
+/// the film adds those of one pixel at once; and narrow tiles do not put the whole ones out of step with the chunks.
 typedef struct {
     uint tile_x, tile_y;  // first pixel of the tile, in the rendered window
     uint columns, rows;   // of the tile
@@ -118,8 +118,9 @@ static inline void samples_of_tiles(CameraCursor* cursor, constant CameraRecord*
     for (uint lane = 0; lane < LANES; ++lane) {
         const bool whole = cursor->columns * cursor->rows == TILE * TILE;
         const uint16 place = (uint16)(cursor->place);
-        x[lane] = cursor->tile_x + (whole ? every_other_bit(place).s0 : cursor->place % cursor->columns);
-        y[lane] = cursor->tile_y + (whole ? every_other_bit(place >> 1).s0 : cursor->place / cursor->columns);
+        const uint columns = max(cursor->columns, 1u);  // past the last sample there may be none
+        x[lane] = cursor->tile_x + (whole ? every_other_bit(place).s0 : cursor->place % columns);
+        y[lane] = cursor->tile_y + (whole ? every_other_bit(place >> 1).s0 : cursor->place / columns);
         sample[lane] = cursor->sample;
         camera_step(cursor, camera);
     }

@@ -97,10 +97,6 @@ static inline void film_count_overflow(const Film* film, long4 overflow) {
 
 /// Adds to all four channels of a pixel.
 static inline uint film_add_units4(const Film* film, global long* sum, long4 units) {
-    if (film->flags & FILM_PIXELS_ONCE) {
-        film_count_overflow(film, film_add_alone(sum, units));
-        return 0;
-    }
     uint atomics = film_add_units(film, sum + 0, units.x);
     atomics += film_add_units(film, sum + 1, units.y);
     atomics += film_add_units(film, sum + 2, units.z);
@@ -114,7 +110,7 @@ typedef struct {
     Rows first, second;
 } Terms;
 
-/// Rows in units of the film, 16 at most, so that their sum is one of 64 bits.
+/// Rows in units of the film: at most 2^57 for two terms of FILM_LIMIT each, so that sixteen add up to 2^61.
 typedef union {
     long16 part[4];
     long4 row[LANES];

@@ -30,6 +30,7 @@ const View views[] = {
     {"one_pixel", Projection::perspective, 0, 1, 1, 7, {}},
     {"one_row", Projection::perspective, 0, 19, 1, 4, {}},
     {"whole_rows_of_tiles", Projection::perspective, 0, 37, 24, 1, {}},
+    {"whole_columns_of_tiles", Projection::perspective, 0, 40, 9, 1, {}},
     {"one_column", Projection::perspective, 0, 1, 19, 4, {}},
     {"thin_lens", Projection::perspective, 0.3, 37, 21, 7, {}},
     {"thin_lens_of_one_sample", Projection::perspective, 0.3, 33, 9, 1, {}},

@@ -238,7 +238,7 @@ void compare_with_queues(std::uint64_t capacity, std::size_t work_group) {
     Scene bright = branching_scene();
     bright.settings.shadows = ShadowMode::none;
     for (SceneMaterial& material : bright.materials) material.emission = glm::vec3(0.25f);
-    ProfiledScene scene(capacity, work_group, {}, {}, bright);
+    ProfiledScene scene(capacity, work_group, {}, {}, bright, Traversal::packet);  // a chunk a work-item
     QueueAdds adds(scene);
     const Frame frame = scene.renderer->render({}, Detail::launches);
     std::size_t intersect = 0, shadow = 0;

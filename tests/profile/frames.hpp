@@ -18,7 +18,7 @@ inline Scene branching_scene() {
 struct ProfiledScene {
     explicit ProfiledScene(std::uint64_t queue_capacity = 256, std::size_t work_group = 0,
                            const std::string& kernels = {}, const FilmPlanes& planes = {},
-                           Scene rendered = branching_scene())
+                           Scene rendered = branching_scene(), Traversal traversal = Traversal::automatic)
         : device(open_device("", 0)),
           scene(std::move(rendered)),
           bvh(build_bvh(scene.vertices, scene.triangles, scene.spheres)) {
@@ -27,6 +27,7 @@ struct ProfiledScene {
         options.work_group = work_group;
         options.kernel_dir = kernels;
         options.planes = planes;
+        options.traversal = traversal;
         renderer.emplace(device, scene, bvh, options);
     }
 
