@@ -6,6 +6,12 @@
 #include "lib/material.h"
 #include "lib/random.h"
 
+#ifdef RAYMILL_PACKETS
+#define PARENTS_A_WORK_ITEM FAMILY
+#else
+#define PARENTS_A_WORK_ITEM CHUNK
+#endif
+
 /// One branch of up to sixteen hits: the child of each lane in `mask`.
 typedef struct {
     uint mask;
@@ -55,36 +61,51 @@ COMPILED_ONCE static ulong write_children(const ChildLanes* branch, uint groups,
     return place;
 }
 
-/// One work-item a chunk of CHUNK hits: counts its children, takes their places with one atomic add, writes them.
+/// Hits of a queue, and where their children go.
+typedef struct {
+    global const Ray* rays;
+    global const Hit* hits;
+    global Ray* children;
+    ulong capacity;
+    global Counters* counters;
+    bool counted;
+} Family;
+
+/// Counts the children of hits [begin, end), takes their places with one atomic add and writes them: the reflected rays
+/// first, so that a chunk of the next level has more rays that went the same way, there and on all levels before. A
+/// function of its own, since runtimes keep what lies in a kernel once for each work-item of a group.
+COMPILED_ONCE static void spawn_family(const World* world, const Family* f, uint begin, uint end) {
+    uint places[PARENTS_A_WORK_ITEM], found = 0;
+    for (uint i = begin; i < end; ++i)
+        if (may_spawn(world, f->hits[i].primitive)) places[found++] = i;
+
+    ChildLanes reflected[PARENTS_A_WORK_ITEM / LANES], refracted[PARENTS_A_WORK_ITEM / LANES];
+    uint spawned = 0, parents = 0, groups = 0;
+    for (uint first = 0; first < found; first += LANES, ++groups) {
+        const HitLanes lanes = gather_hits(f->rays, f->hits, places + first, min((uint)LANES, found - first));
+        spawn_children(world, &lanes, reflected + groups, refracted + groups);
+        spawned += popcount(reflected[groups].mask) + popcount(refracted[groups].mask);
+        parents += popcount(reflected[groups].mask | refracted[groups].mask);
+    }
+    if (spawned == 0) return;
+
+    if (f->counted) {
+        atom_add(&f->counters->parents, (ulong)parents);
+        atom_inc(&f->counters->atomics[ATOMICS_SECONDARY]);  // the one below
+    }
+    const ulong place = atom_add(&f->counters->children, (ulong)spawned);
+    if (place + spawned > f->capacity) return;  // the host sees the count and stops
+    write_children(refracted, groups, f->children, write_children(reflected, groups, f->children, place));
+}
+
+/// One work-item PARENTS_A_WORK_ITEM hits.
 kernel void secondary(global const Ray* rays, uint first_ray, uint count, global const Hit* hits,
                       global const Vertex* vertices, global const Triangle* triangles, global const Sphere* spheres,
                       global const Plane* planes, global const Material* materials, global const Texture* textures,
                       global const float* texels, constant SceneConstants* constants, global Ray* children,
                       uint first_child, uint capacity, global Counters* counters, uint counted) {
     const World world = {vertices, triangles, spheres, planes, materials, textures, texels, constants};
-    const uint begin = get_global_id(0) * CHUNK;
-    const uint end = min(begin + CHUNK, count);
-    uint places[CHUNK], found = 0;
-    for (uint i = begin; i < end; ++i)
-        if (may_spawn(&world, hits[i].primitive)) places[found++] = i;
-
-    ChildLanes reflected[CHUNK / LANES], refracted[CHUNK / LANES];
-    uint spawned = 0, parents = 0, groups = 0;
-    for (uint first = 0; first < found; first += LANES, ++groups) {
-        const HitLanes lanes = gather_hits(rays + first_ray, hits, places + first, min((uint)LANES, found - first));
-        spawn_children(&world, &lanes, reflected + groups, refracted + groups);
-        spawned += popcount(reflected[groups].mask) + popcount(refracted[groups].mask);
-        parents += popcount(reflected[groups].mask | refracted[groups].mask);
-    }
-    if (spawned == 0) return;
-
-    if (counted) {
-        atom_add(&counters->parents, (ulong)parents);
-        atom_inc(&counters->atomics[ATOMICS_SECONDARY]);  // the one below
-    }
-    ulong place = atom_add(&counters->children, (ulong)spawned);
-    if (place + spawned > capacity) return;  // the host sees the count and stops
-    // The reflected ones first: a chunk of the next level then has more rays that go the same way.
-    place = write_children(reflected, groups, children, first_child + place);
-    write_children(refracted, groups, children, place);
+    const Family family = {rays + first_ray, hits, children + first_child, capacity, counters, counted != 0};
+    const uint begin = get_global_id(0) * PARENTS_A_WORK_ITEM;
+    if (begin < count) spawn_family(&world, &family, begin, min(begin + PARENTS_A_WORK_ITEM, count));
 }

@@ -19,6 +19,35 @@ COMPILED_ONCE static uint add_local_light(const Film* film, const World* world, 
     return film_add_terms(film, FILM_AMBIENT, FILM_EMISSION, &terms);
 }
 
+/// Light samples of a launch, and where a chunk's shadow rays to them go, a segment each.
+typedef struct {
+    global const LightRecord* lights;
+    global const LightSlot* slots;
+    uint count;
+    bool with_local_light;
+    global ShadowRay* segments;
+    uint pushed[SHADOW_SAMPLES];
+} ChunkLights;
+
+/// Shades some hits of a chunk; `passing` grows by those that pass light on. Returns the atomic operations. A function of
+/// its own, since runtimes keep what lies in a kernel once for each work-item of a group.
+COMPILED_ONCE static uint shade_lanes(const Film* film, const World* world, const HitLanes* hits, ChunkLights* l,
+                                      uint* passing) {
+    Shading shading;
+    shading.hits = *hits;
+    shade_hits(world, &shading);
+    const uint atomics = l->with_local_light ? add_local_light(film, world, &shading) : 0;
+    *passing += popcount(shading.passing);
+    if (!answers_light(&shading)) return atomics;
+    const Lanes3 start = shadow_start(world, &shading.surface);
+    for (uint k = 0; k < l->count; ++k) {
+        global ShadowRay* end = l->segments + k * CHUNK + l->pushed[k];
+        l->pushed[k] +=
+            push_shadow_rays(&shading, start, world->constants, l->lights + l->slots[k].light, l->slots[k], end);
+    }
+    return atomics;
+}
+
 /// One work-item a chunk of CHUNK hits; segment = chunk * slot_count + slot.
 kernel void shade(global const Ray* rays, uint first_ray, uint count, global const Hit* hits, uint first_slot,
                   uint slot_count, global const LightSlot* slots, global const LightRecord* lights,
@@ -38,26 +67,18 @@ kernel void shade(global const Ray* rays, uint first_ray, uint count, global con
         places[found] = i;
         found += hits[i].primitive != NO_INDEX;
     }
-    uint pushed[SHADOW_SAMPLES] = {0}, passing = 0, atomics = 0;
+    ChunkLights l = {lights, slots + first_slot, slot_count, first_slot == 0, shadow_rays + chunk * slot_count * CHUNK,
+                     {0}};
+    uint passing = 0, atomics = 0;
     for (uint first = 0; first < found; first += LANES) {
-        Shading shading;
-        shading.hits = gather_hits(rays + first_ray, hits, places + first, min((uint)LANES, found - first));
-        shade_hits(&world, &shading);
-        if (first_slot == 0) atomics += add_local_light(&film, &world, &shading);
-        passing += popcount(shading.passing);
-        if (!answers_light(&shading)) continue;
-        const Lanes3 start = shadow_start(&world, &shading.surface);
-        for (uint k = 0; k < slot_count; ++k) {
-            const LightSlot slot = slots[first_slot + k];
-            global ShadowRay* segment = shadow_rays + (chunk * slot_count + k) * CHUNK;
-            pushed[k] += push_shadow_rays(&shading, start, constants, lights + slot.light, slot, segment + pushed[k]);
-        }
+        const HitLanes lanes = gather_hits(rays + first_ray, hits, places + first, min((uint)LANES, found - first));
+        atomics += shade_lanes(&film, &world, &lanes, &l, &passing);
     }
 
     uint total = 0;
     for (uint k = 0; k < slot_count; ++k) {
-        shadow_counts[chunk * slot_count + k] = pushed[k];
-        total += pushed[k];
+        shadow_counts[chunk * slot_count + k] = l.pushed[k];
+        total += l.pushed[k];
     }
     atomics += film_count(&counters->shadow_rays, total);
     if (first_slot == 0) {

@@ -80,6 +80,7 @@ Stages::Stages(const Device& device, std::size_t work_group, const std::string& 
     shade_ = chunk_stage(program, profile::Stage::shade);
     shadow_ = ray_stage(profile::Stage::shadow);
     secondary_ = chunk_stage(program, profile::Stage::secondary);
+    if (packets_) secondary_.items = FAMILY;
     resolve_ = item_stage(profile::Stage::resolve, item_group);
 }
 
@@ -121,9 +122,9 @@ void Stages::generate(const DeviceScene& scene, std::uint64_t first_sample, uint
 }
 
 void Stages::intersect(const DeviceScene& scene, QueueRange<Ray> rays, Buffer<Hit>& hits, Film& film) {
-    launch(intersect_, {(rays.count + intersect_.items - 1) / intersect_.items, rays.count}, rays.items, rays.first,
-           rays.count, scene.nodes, scene.triangle_blocks, scene.sphere_blocks, scene.planes, scene.textures,
-           scene.texels, scene.constants, hits, film.sums, film.counters, film_flags(film));
+    launch(intersect_, {intersect_.work_items(rays.count), rays.count}, rays.items, rays.first, rays.count, scene.nodes,
+           scene.triangle_blocks, scene.sphere_blocks, scene.planes, scene.textures, scene.texels, scene.constants,
+           hits, film.sums, film.counters, film_flags(film));
 }
 
 void Stages::shade(const DeviceScene& scene, QueueRange<Ray> rays, const Buffer<Hit>& hits, SlotRange slots,
@@ -151,9 +152,9 @@ void Stages::shadow(const DeviceScene& scene, const ShadowQueue& shadow_rays, ui
 void Stages::secondary(const DeviceScene& scene, QueueRange<Ray> rays, const Buffer<Hit>& hits, QueueEnd<Ray> children,
                        Film& film) {
     const uint capacity = static_cast<uint>(children.items.size()) - children.first;
-    launch(secondary_, {chunks(rays.count), rays.count}, rays.items, rays.first, rays.count, hits, scene.vertices,
-           scene.triangles, scene.spheres, scene.planes, scene.materials, scene.textures, scene.texels, scene.constants,
-           children.items, children.first, capacity, film.counters, film.counted);
+    launch(secondary_, {secondary_.work_items(rays.count), rays.count}, rays.items, rays.first, rays.count, hits,
+           scene.vertices, scene.triangles, scene.spheres, scene.planes, scene.materials, scene.textures, scene.texels,
+           scene.constants, children.items, children.first, capacity, film.counters, film.counted);
 }
 
 void Stages::resolve(const Film& film, uint spp, Buffer<float>& pixels) {

@@ -110,6 +110,8 @@ class Stages {
         cl::Kernel kernel;
         std::size_t local_size;
         uint items;  // of a work-item
+
+        uint work_items(uint queue_items) const { return (queue_items + items - 1) / items; }
     };
     /// What a launch is to work on: see LaunchSize.
     struct Work {

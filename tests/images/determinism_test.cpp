@@ -134,6 +134,10 @@ TEST_F(OneFilm, comes_of_a_capacity_that_divides_nothing) {
 TEST_F(OneFilm, comes_of_a_queue_larger_than_the_image) {
     expect_same(options_with(65536, 64));
 }
+// What a work-item keeps must not be kept once for each of them: stacks of threads end at a few megabytes.
+TEST_F(OneFilm, comes_of_the_largest_work_groups) {
+    expect_same(options_with(997, test_device().info.largest_work_group));
+}
 TEST_F(OneFilm, comes_of_a_capacity_that_is_chosen_by_itself) {
     expect_same(options_with(0, 256));
 }

@@ -201,8 +201,8 @@ TEST(FalsifiedCounts, of_shadow_rays_fail_every_frame) {
 
 TEST(FalsifiedCounts, of_parents_fail_a_profiled_frame) {
     const TemporaryFolder folder;
-    falsify(folder.path() / "kernels", "secondary.cl", "&counters->parents, (ulong)parents",
-            "&counters->parents, (ulong)3 * parents");
+    falsify(folder.path() / "kernels", "secondary.cl", "counters->parents, (ulong)parents",
+            "counters->parents, (ulong)3 * parents");
     ProfiledScene scene(256, 0, folder.file("kernels"));
     EXPECT_THROW(scene.renderer->render({}, Detail::totals), QueueMismatch);
 }
