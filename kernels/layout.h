@@ -20,7 +20,7 @@ using ulong = std::uint64_t;
 enum {
     BVH_WIDTH = 8,        // children of a node, and primitives in a leaf block
     CHUNK = 64,           // queue items that one work-item of a chunked stage owns
-    FAMILY = 4 * CHUNK,   // hits of one work-item of `secondary` where rays are traced together
+    FAMILY = 4 * CHUNK,   // that one of `secondary` owns where rays are traced together
     TILE = 8,             // camera samples are generated in tiles of TILE x TILE pixels
     SHADOW_SAMPLES = 4,   // light samples per hit that one shade / shadow pass handles at most
     FILM_CHANNELS = 4,    // of a plane: R, G, B, and one more that its plane explains

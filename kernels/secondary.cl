@@ -61,7 +61,7 @@ COMPILED_ONCE static ulong write_children(const ChildLanes* branch, uint groups,
     return place;
 }
 
-/// Hits of a queue, and where their children go.
+/// The hits of a launch, and where their children go.
 typedef struct {
     global const Ray* rays;
     global const Hit* hits;
@@ -69,43 +69,42 @@ typedef struct {
     ulong capacity;
     global Counters* counters;
     bool counted;
-} Family;
+} Parents;
 
 /// Counts the children of hits [begin, end), takes their places with one atomic add and writes them: the reflected rays
-/// first, so that a chunk of the next level has more rays that went the same way, there and on all levels before. A
-/// function of its own, since runtimes keep what lies in a kernel once for each work-item of a group.
-COMPILED_ONCE static void spawn_family(const World* world, const Family* f, uint begin, uint end) {
+/// first, so that a chunk of the next level has more rays that went the same way, there and on all levels before.
+COMPILED_ONCE static void spawn_family(const World* world, const Parents* p, uint begin, uint end) {
     uint places[PARENTS_A_WORK_ITEM], found = 0;
     for (uint i = begin; i < end; ++i)
-        if (may_spawn(world, f->hits[i].primitive)) places[found++] = i;
+        if (may_spawn(world, p->hits[i].primitive)) places[found++] = i;
 
     ChildLanes reflected[PARENTS_A_WORK_ITEM / LANES], refracted[PARENTS_A_WORK_ITEM / LANES];
     uint spawned = 0, parents = 0, groups = 0;
     for (uint first = 0; first < found; first += LANES, ++groups) {
-        const HitLanes lanes = gather_hits(f->rays, f->hits, places + first, min((uint)LANES, found - first));
+        const HitLanes lanes = gather_hits(p->rays, p->hits, places + first, min((uint)LANES, found - first));
         spawn_children(world, &lanes, reflected + groups, refracted + groups);
         spawned += popcount(reflected[groups].mask) + popcount(refracted[groups].mask);
         parents += popcount(reflected[groups].mask | refracted[groups].mask);
     }
     if (spawned == 0) return;
 
-    if (f->counted) {
-        atom_add(&f->counters->parents, (ulong)parents);
-        atom_inc(&f->counters->atomics[ATOMICS_SECONDARY]);  // the one below
+    if (p->counted) {
+        atom_add(&p->counters->parents, (ulong)parents);
+        atom_inc(&p->counters->atomics[ATOMICS_SECONDARY]);  // the one below
     }
-    const ulong place = atom_add(&f->counters->children, (ulong)spawned);
-    if (place + spawned > f->capacity) return;  // the host sees the count and stops
-    write_children(refracted, groups, f->children, write_children(reflected, groups, f->children, place));
+    const ulong place = atom_add(&p->counters->children, (ulong)spawned);
+    if (place + spawned > p->capacity) return;  // the host sees the count and stops
+    write_children(refracted, groups, p->children, write_children(reflected, groups, p->children, place));
 }
 
-/// One work-item PARENTS_A_WORK_ITEM hits.
+/// A work-item owns PARENTS_A_WORK_ITEM hits.
 kernel void secondary(global const Ray* rays, uint first_ray, uint count, global const Hit* hits,
                       global const Vertex* vertices, global const Triangle* triangles, global const Sphere* spheres,
                       global const Plane* planes, global const Material* materials, global const Texture* textures,
                       global const float* texels, constant SceneConstants* constants, global Ray* children,
                       uint first_child, uint capacity, global Counters* counters, uint counted) {
     const World world = {vertices, triangles, spheres, planes, materials, textures, texels, constants};
-    const Family family = {rays + first_ray, hits, children + first_child, capacity, counters, counted != 0};
+    const Parents all = {rays + first_ray, hits, children + first_child, capacity, counters, counted != 0};
     const uint begin = get_global_id(0) * PARENTS_A_WORK_ITEM;
-    if (begin < count) spawn_family(&world, &family, begin, min(begin + PARENTS_A_WORK_ITEM, count));
+    if (begin < count) spawn_family(&world, &all, begin, min(begin + PARENTS_A_WORK_ITEM, count));
 }

@@ -29,8 +29,7 @@ typedef struct {
     uint pushed[SHADOW_SAMPLES];
 } ChunkLights;
 
-/// Shades some hits of a chunk; `passing` grows by those that pass light on. Returns the atomic operations. A function of
-/// its own, since runtimes keep what lies in a kernel once for each work-item of a group.
+/// Shades some hits of a chunk; `passing` grows by those that pass light on. Returns the atomic operations.
 COMPILED_ONCE static uint shade_lanes(const Film* film, const World* world, const HitLanes* hits, ChunkLights* l,
                                       uint* passing) {
     Shading shading;

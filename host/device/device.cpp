@@ -10,6 +10,9 @@ namespace raymill {
 
 namespace {
 
+/// Items of a work-group lie on the stack of one thread (8 MiB at PoCL), with up to 6 KiB each.
+constexpr std::size_t largest_work_group_of_processor = 512;
+
 constexpr cl_int platform_not_found = -1001;  // CL_PLATFORM_NOT_FOUND_KHR, of the ICD loader
 
 struct Found {
@@ -49,6 +52,8 @@ DeviceInfo describe(const cl::Platform& platform, const cl::Device& device, int 
     info.constant_memory = device.getInfo<CL_DEVICE_MAX_CONSTANT_BUFFER_SIZE>();
     info.cache = device.getInfo<CL_DEVICE_GLOBAL_MEM_CACHE_SIZE>();
     info.largest_work_group = device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
+    if (info.type == "CPU")
+        info.largest_work_group = std::min(info.largest_work_group, largest_work_group_of_processor);
     info.unusable = why_unusable(device);
     return info;
 }

@@ -32,7 +32,7 @@ struct DeviceInfo {
     std::uint64_t largest_buffer = 0;     // bytes
     std::uint64_t constant_memory = 0;    // bytes
     std::uint64_t cache = 0;              // bytes of global memory cache, as the device tells
-    std::size_t largest_work_group = 0;
+    std::size_t largest_work_group = 0;   // that Raymill's kernels run with
     std::string unusable;  // why Raymill cannot use it; empty if it can
 };
 

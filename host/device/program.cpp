@@ -9,10 +9,12 @@ namespace raymill {
 namespace {
 
 /// Division and square roots must be rounded like the reference's; devices that do so anyway refuse the option.
+/// RAYMILL_PROCESSOR: see kernels/lib/math.h.
 std::string build_options(const Device& device) {
     std::string options = "-cl-std=CL1.2";
     if (device.device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>() & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT)
         options += " -cl-fp32-correctly-rounded-divide-sqrt";
+    if (device.info.type == "CPU") options += " -DRAYMILL_PROCESSOR";
     return options;
 }
 

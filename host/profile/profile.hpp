@@ -77,7 +77,8 @@ struct Launch {
     std::uint64_t items_in = 0;    // that its queue holds: rays, for shadow shadow rays; pixels' channels for resolve
     std::uint64_t items_out = 0;   // rays (generate, secondary), hits (intersect), shadow rays (shade), those not
                                    // blocked (shadow), channels (resolve); 0 for features, which makes no items
-    std::uint64_t work_items = 0;  // that had work: one an item (generate, resolve), chunk, or segment (shadow)
+    std::uint64_t work_items = 0;  // that had work: one an item (resolve), chunk, segment (shadow) or, where rays are
+                                   // traced together, FAMILY of hits (secondary)
     std::uint64_t groups = 0;      // work-groups
     std::uint64_t places = 0;      // items that these groups could have worked on
     Traffic traffic;

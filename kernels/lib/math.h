@@ -9,8 +9,9 @@
 
 #include "layout.h"
 
-/// For the large functions that kernels call: PoCL compiles what is inlined into a kernel three times.
-#ifdef RAYMILL_PACKETS
+/// For the large functions that kernels call: PoCL compiles what is inlined into a kernel three times, and keeps what
+/// lies in it once for each work-item of a group.
+#ifdef RAYMILL_PROCESSOR
 #define COMPILED_ONCE __attribute__((noinline))
 #else
 #define COMPILED_ONCE inline

@@ -134,9 +134,13 @@ TEST_F(OneFilm, comes_of_a_capacity_that_divides_nothing) {
 TEST_F(OneFilm, comes_of_a_queue_larger_than_the_image) {
     expect_same(options_with(65536, 64));
 }
-// What a work-item keeps must not be kept once for each of them: stacks of threads end at a few megabytes.
+// On processors all items of a work-group lie on one stack.
 TEST_F(OneFilm, comes_of_the_largest_work_groups) {
-    expect_same(options_with(997, test_device().info.largest_work_group));
+    for (const Traversal traversal : {Traversal::packet, Traversal::single}) {
+        RenderOptions options = options_with(997, test_device().info.largest_work_group);
+        options.traversal = traversal;
+        expect_same(options);
+    }
 }
 TEST_F(OneFilm, comes_of_a_capacity_that_is_chosen_by_itself) {
     expect_same(options_with(0, 256));
@@ -176,8 +180,10 @@ TEST_F(OneFilm, keeps_its_beauty_whatever_else_it_keeps) {
         ASSERT_EQ(sum, beauty[i]) << "channel " << i;
     }
     options.memory.queue_capacity = 64;
-    options.work_group = 1;
-    EXPECT_EQ(render(scene(), options).hash(), all.hash());
+    for (const std::size_t work_group : {std::size_t{1}, test_device().info.largest_work_group}) {
+        options.work_group = work_group;
+        EXPECT_EQ(render(scene(), options).hash(), all.hash()) << work_group;
+    }
 }
 
 TEST_F(OneFilm, comes_of_one_thread_and_of_two) {

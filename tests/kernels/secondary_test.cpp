@@ -169,7 +169,7 @@ TEST_F(Secondary, every_child_is_the_reference_s) {
 TEST_F(Secondary, queues_of_any_size_spawn_the_same_children) {
     const HitQueue queue = random_hits(scene_, 300, 23);
     const auto whole = by_parent(rig_.secondary(queue.rays, queue.hits, 600), queue.rays);
-    for (const uint size : {0u, 1u, 63u, 64u, 65u, 300u}) {
+    for (const uint size : {0u, 1u, 63u, 64u, 65u, FAMILY - 1u, FAMILY + 0u, FAMILY + 1u, 300u}) {
         const std::span<const Hit> hits(queue.hits.data(), size);
         const SecondaryResult part = rig_.secondary(std::span(queue.rays).first(size), hits, 2 * size);
         const auto found = by_parent(part, queue.rays);
@@ -181,24 +181,27 @@ TEST_F(Secondary, queues_of_any_size_spawn_the_same_children) {
 }
 
 TEST_F(Secondary, a_batch_in_the_middle_of_a_queue_spawns_like_one_at_its_start) {
-    const HitQueue queue = random_hits(scene_, 200, 24);
-    const std::span<const Hit> hits(queue.hits.data() + 70, 130);
-    const auto middle = by_parent(rig_.secondary(queue.rays, hits, 400, 70), queue.rays);
-    const auto start = by_parent(rig_.secondary(std::span(queue.rays).subspan(70), hits, 400), queue.rays);
+    const HitQueue queue = random_hits(scene_, 600, 24);
+    const std::span<const Hit> hits(queue.hits.data() + 70, 530);
+    const auto middle = by_parent(rig_.secondary(queue.rays, hits, 1200, 70), queue.rays);
+    const auto start = by_parent(rig_.secondary(std::span(queue.rays).subspan(70), hits, 1200), queue.rays);
     ASSERT_EQ(middle.size(), start.size());
     for (const auto& [key, child] : middle) ASSERT_TRUE(same_bits(child, start.at(key)));
 }
 
 TEST_F(Secondary, children_fill_the_capacity_to_the_last_and_never_beyond) {
-    const HitQueue queue = random_hits(scene_, 200, 25);
-    const auto count = static_cast<uint>(rig_.secondary(queue.rays, queue.hits, 400).film.counters.children);
-    ASSERT_GT(count, 200u);
+    const HitQueue queue = random_hits(scene_, 1000, 25);
+    const auto count = static_cast<uint>(rig_.secondary(queue.rays, queue.hits, 2000).film.counters.children);
+    ASSERT_GT(count, 1000u);
     const SecondaryResult exactly = rig_.secondary(queue.rays, queue.hits, count);
     EXPECT_EQ(exactly.film.counters.children, count);
     EXPECT_EQ(by_parent(exactly, queue.rays).size(), count);
     EXPECT_EQ(touched_from(exactly.children, 0), count);
-    for (const uint capacity : {count - 1, count - 64, 64u, 1u, 0u}) {
+    for (const uint capacity : {count - 1, count - 64, count / 2, 64u, 1u, 0u}) {
         const SecondaryResult less = rig_.secondary(queue.rays, queue.hits, capacity);
+        if (capacity == count / 2) {
+            EXPECT_GT(touched_from(less.children, 0), 0u) << "some work-items fit";
+        }
         EXPECT_EQ(less.film.counters.children, count) << "what was asked for is counted all the same";
         EXPECT_EQ(touched_from(less.children, capacity), 0u) << capacity;
     }
