@@ -19,11 +19,6 @@ COMPILED_ONCE static uint add_background(const Film* film, global const Texture*
     return film_add_terms(film, FILM_EMISSION, FILM_EMISSION, &terms);
 }
 
-/// Adds to a pixel's alpha.
-static inline uint add_coverage(const Film* film, uint pixel, uint samples) {
-    return film_add_units(film, film_pixel(film, FILM_BEAUTY, pixel) + 3, samples * FILM_ONE);
-}
-
 /// One work-item a chunk of CHUNK rays, or one ray where rays are traced alone.
 kernel void intersect(global const Ray* rays, uint first_ray, uint count, global const BvhNode* nodes,
                       global const TriangleBlock* triangle_blocks, global const SphereBlock* sphere_blocks,
@@ -36,20 +31,9 @@ kernel void intersect(global const Ray* rays, uint first_ray, uint count, global
     const uint end = min(begin + RAYS_A_WORK_ITEM, count);
     if (begin >= count) return;
     if (begin == 0) counters->children = 0;
-    find_hits(&geometry, rays + first_ray + begin, end - begin, hits + begin);
+    ulong missing = find_hits(&geometry, rays + first_ray + begin, end - begin, hits + begin);
     uint misses[RAYS_A_WORK_ITEM], missed = 0, atomics = 0;
-    uint pixel = 0, covered = 0;  // how many camera rays of the pixel have hit something, of those in a row
-    for (uint i = begin; i < end; ++i) {
-        global const Ray* ray = rays + first_ray + i;
-        if (hits[i].primitive == NO_INDEX) {
-            misses[missed++] = i;
-        } else if (ray->route == ROUTE_CAMERA) {
-            if (ray->pixel != pixel) atomics += add_coverage(&film, pixel, covered);
-            covered = ray->pixel != pixel ? 1 : covered + 1;
-            pixel = ray->pixel;
-        }
-    }
-    atomics += add_coverage(&film, pixel, covered);
+    for (; missing != 0; missing &= missing - 1) misses[missed++] = begin + lowest_bit64(missing);
     for (uint first = 0; first < missed; first += LANES) {
         const uint in_lanes = min((uint)LANES, missed - first);
         const HitLanes lanes = gather_hits(rays + first_ray, hits, misses + first, in_lanes);

@@ -1,7 +1,7 @@
 // Local illumination: ambient and emission, and one shadow ray for each light sample that would add something.
 // Reads:  rays [first_ray, first_ray + count), hits [0, count), light samples [first_slot, first_slot + slot_count).
-// Writes: film (ambient and emission, with slot 0); shadow_rays and shadow_counts, a segment of CHUNK rays for each chunk
-//         and light sample, so that a segment's rays go to one light in the order of their pixels; counters->shadow_rays,
+// Writes: film (ambient, emission and coverage, with slot 0); shadow_rays and shadow_counts, a segment of CHUNK rays for each
+//         chunk and light sample, so that its rays go to one light in the order of their pixels; counters->shadow_rays,
 //         and with slot 0 missed and passing, where the frame is profiled.
 // Next:   shadow.
 
@@ -12,6 +12,7 @@
 COMPILED_ONCE static uint add_local_light(const Film* film, const World* world, const Shading* s) {
     Terms terms;
     terms.lanes = first_lanes(s->hits.count);
+    terms.covered = lane_mask16(s->hits.route == ROUTE_CAMERA) & terms.lanes;
     vstore16(s->hits.pixel, 0, terms.pixel);
     vstore16(s->hits.route, 0, terms.route);
     terms.first = rows_of(ambient_radiance(world, s), (float16)(0.0f));
@@ -29,11 +30,13 @@ typedef struct {
     uint pushed[SHADOW_SAMPLES];
 } ChunkLights;
 
-/// Shades some hits of a chunk; `passing` grows by those that pass light on. Returns the atomic operations.
-COMPILED_ONCE static uint shade_lanes(const Film* film, const World* world, const HitLanes* hits, ChunkLights* l,
+/// Shades those hits of a chunk that `place` names, up to sixteen; `passing` grows by those that pass light on. Returns the
+/// atomic operations.
+COMPILED_ONCE static uint shade_lanes(const Film* film, const World* world, global const Ray* rays,
+                                      global const Hit* hits, const uint* place, uint count, ChunkLights* l,
                                       uint* passing) {
     Shading shading;
-    shading.hits = *hits;
+    shading.hits = gather_hits(rays, hits, place, count);
     shade_hits(world, &shading);
     const uint atomics = l->with_local_light ? add_local_light(film, world, &shading) : 0;
     *passing += popcount(shading.passing);
@@ -69,10 +72,9 @@ kernel void shade(global const Ray* rays, uint first_ray, uint count, global con
     ChunkLights l = {lights, slots + first_slot, slot_count, first_slot == 0, shadow_rays + chunk * slot_count * CHUNK,
                      {0}};
     uint passing = 0, atomics = 0;
-    for (uint first = 0; first < found; first += LANES) {
-        const HitLanes lanes = gather_hits(rays + first_ray, hits, places + first, min((uint)LANES, found - first));
-        atomics += shade_lanes(&film, &world, &lanes, &l, &passing);
-    }
+    for (uint first = 0; first < found; first += LANES)
+        atomics += shade_lanes(&film, &world, rays + first_ray, hits, places + first, min((uint)LANES, found - first), &l,
+                               &passing);
 
     uint total = 0;
     for (uint k = 0; k < slot_count; ++k) {

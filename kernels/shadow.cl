@@ -10,6 +10,7 @@
 /// The terms of up to sixteen rays in a row; the last one's again where there are fewer.
 static inline void load_terms(global const ShadowRay* rays, uint count, Terms* terms) {
     terms->lanes = first_lanes(count);
+    terms->covered = 0;
     terms->first = load_rows(rays->diffuse, WORDS(ShadowRay), count);
     terms->second = load_rows(rays->specular, WORDS(ShadowRay), count);
     for (uint lane = 0; lane < LANES; ++lane) {

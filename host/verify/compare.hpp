@@ -34,8 +34,8 @@ Comparison compare_camera_ray(const Truth& truth, const Ray& ray);
 /// The closest hit of a ray, and what a miss adds.
 Comparison compare_hit(const Truth& truth, const Ray& ray, const Hit& hit, const Contribution& added);
 
-/// Ambient and emission of a hit.
-Comparison compare_unshadowed(const Truth& truth, const HitContext& context, const Contribution& added);
+/// Ambient and emission of a hit, and its coverage.
+Comparison compare_unshadowed(const Truth& truth, const HitContext& context, const Ray& ray, const Contribution& added);
 
 /// The shadow ray of a hit to a light sample, or its absence.
 Comparison compare_shadow_ray(const Truth& truth, const HitContext& context, const Ray& ray, const LightSlot& slot,

@@ -98,7 +98,6 @@ Comparison compare_hit(const Truth& truth, const Ray& ray, const Hit& hit, const
         compare_background(c, truth, ray, added);
         return c;
     }
-    c.number("coverage", from_units(added.coverage), ray.route == ROUTE_CAMERA ? 1 : 0, 0);
     const auto all = crossings(truth.scene, r, hit.primitive);
     const Crossing* crossing = nearest(all, expected.t);
     c.number("t", hit.t, expected.t, crossing->t_error);

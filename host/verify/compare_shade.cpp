@@ -98,13 +98,15 @@ void compare_start(Comparison& comparison, const Truth& truth, const HitContext&
     comparison.same("starts on the right side", height > 0, true);
 }
 
-Comparison compare_unshadowed(const Truth& truth, const HitContext& context, const Contribution& added) {
+Comparison compare_unshadowed(const Truth& truth, const HitContext& context, const Ray& ray,
+                              const Contribution& added) {
     const Bounded ambient{truth.tracer.ambient_term(context.surface),
                           8 * rounding * truth.tracer.ambient_term(context.surface)};
     const Bounded emission = exact(truth.tracer.emission(context.surface));
     Comparison c;
     compare_units(c, "ambient", added.ambient, context.throughput * ambient * context.local);
     compare_units(c, "emission", added.emission, context.throughput * emission);
+    c.number("coverage", from_units(added.coverage), ray.route == ROUTE_CAMERA ? 1 : 0, 0);
     if (!(c.ratio() <= 1) && context.bounds.facing < 1) c.disagree("the ray grazes the surface", context.bounds.facing);
     return c;
 }

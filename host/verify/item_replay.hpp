@@ -33,7 +33,7 @@ class ItemReplay {
     /// The references must outlive it.
     ItemReplay(const Device& device, Stages& stages, const DeviceScene& scene);
 
-    /// What rays that miss bring home, and the coverage of those that hit.
+    /// What rays that miss bring home.
     std::vector<Contribution> intersect(std::span<const Ray> rays);
     ShadeReplay shade(std::span<const Ray> rays, std::span<const Hit> hits, SlotRange slots);
     /// One contribution for each place of the segments; those beyond a segment's count are zero.

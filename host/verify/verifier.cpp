@@ -145,7 +145,7 @@ class Verifier {
         tbb::parallel_for(std::size_t{0}, hits.size(), [&](std::size_t i) {
             const std::size_t item = hits[i];
             const HitContext context = hit_context(truth_, wave.rays[item], wave.hits[item]);
-            if (unshadowed) results[i * parts] = compare_unshadowed(truth_, context, wave.added[item]);
+            if (unshadowed) results[i * parts] = compare_unshadowed(truth_, context, wave.rays[item], wave.added[item]);
             for (std::size_t k = 0; k < range.count; ++k) {
                 const std::size_t slot = range.first + k;
                 const ShadowItem* shadow = sent[item * slots_.size() + slot];

@@ -22,6 +22,7 @@ void add(Contribution& sum, const Contribution& more) {
         sum.diffuse[c] += more.diffuse[c];
         sum.specular[c] += more.specular[c];
     }
+    sum.coverage += more.coverage;
 }
 
 }  // namespace
@@ -69,17 +70,18 @@ void WaveRecorder::begin(const WaveView& view) {
 void WaveRecorder::take_hits(const WaveView& view) {
     wave_->hits = view.hits.read(device_, 0, view.rays.count);
     wave_->added = replay_.intersect(wave_->rays);
-    for (std::size_t i = 0; i < wave_->rays.size(); ++i)
-        if (wave_->rays[i].route != ROUTE_CAMERA) wave_->added[i].coverage = 0;  // replayed as camera rays
 }
 
 void WaveRecorder::take_shadow_rays(const WaveView& view) {
     const std::size_t segments = std::size_t{Stages::chunks(view.rays.count)} * view.slots.count;
     const auto rays = view.shadow_rays.rays.read(device_, 0, segments * CHUNK);
     const auto counts = view.shadow_rays.counts.read(device_, 0, segments);
-    const ShadeReplay replay = replay_.shade(wave_->rays, wave_->hits, view.slots);
+    ShadeReplay replay = replay_.shade(wave_->rays, wave_->hits, view.slots);
     const std::vector<Contribution> arrived = replay_.shadow(rays, counts);
-    for (std::size_t i = 0; i < replay.added.size(); ++i) add(wave_->added[i], replay.added[i]);
+    for (std::size_t i = 0; i < replay.added.size(); ++i) {
+        if (wave_->rays[i].route != ROUTE_CAMERA) replay.added[i].coverage = 0;  // replayed as a camera ray
+        add(wave_->added[i], replay.added[i]);
+    }
     for (std::size_t segment = 0; segment < segments; ++segment) {
         if (replay.counts[segment] != counts[segment]) {
             wave_->replay_faults.push_back(fmt::format("shade pushed {} rays into segment {}, and {} when repeated",

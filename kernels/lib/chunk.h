@@ -141,6 +141,15 @@ static inline ulong chunk_done(const RayChunk* c) {
     return done;
 }
 
+/// Those rays that have found a primitive.
+static inline ulong chunk_found(const RayChunk* c) {
+    ulong found = 0;
+#pragma unroll
+    for (uint group = 0; group < GROUPS; ++group)
+        found |= (ulong)lane_mask16(c->best_primitive[group] != NO_INDEX) << GROUP * group;
+    return found;
+}
+
 /// The first ray in the lanes that are left out.
 static inline float16 repeat_first(const float16* vectors, uint group, uint first, int16 is_in) {
     return select((float16)(get_lane(vectors, first)), vectors[group], is_in);

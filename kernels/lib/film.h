@@ -105,7 +105,8 @@ static inline uint film_add_units4(const Film* film, global long* sum, long4 uni
 
 /// Radiance of two terms for each of up to LANES items: rows of three channels, and a fourth that is not read.
 typedef struct {
-    uint lanes;  // with an item, one bit each
+    uint lanes;    // with an item, one bit each
+    uint covered;  // of these, the hits of camera rays, which the beauty counts in its fourth channel
     uint pixel[LANES], route[LANES];
     Rows first, second;
 } Terms;
@@ -145,17 +146,25 @@ COMPILED_ONCE static uint film_add_rows(const Film* film, uint plane, const uint
     return atomics + film_add_units4(film, sums + (ulong)pixel * FILM_CHANNELS, sum);
 }
 
+/// Channels [first, last) of those rows of a part, four rows long, of which `lanes` has a bit.
+static inline int16 channels_of(uint lanes, uint part, uint first, uint last) {
+    const uint16 row = (uint16)(1, 1, 1, 1, 2, 2, 2, 2, 4, 4, 4, 4, 8, 8, 8, 8);
+    const uint16 channel = (uint16)(0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3);
+    return (((uint16)(lanes >> 4 * part) & row) != 0u) & (channel >= first) & (channel < last);
+}
+
 /// Rows' first channels, three or four of them, in units of the film; nothing for rows without an item, of which
 /// `lanes` has no bit.
 static inline UnitRows film_units_of_rows(const Film* film, const Rows* rows, uint channels, uint lanes) {
-    const uint16 row = (uint16)(1, 1, 1, 1, 2, 2, 2, 2, 4, 4, 4, 4, 8, 8, 8, 8);
-    const uint16 channel = (uint16)(0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3);
     UnitRows units;
-    for (uint i = 0; i < 4; ++i) {
-        const int16 there = (((uint16)(lanes >> 4 * i) & row) != 0u) & (channel < channels);
-        units.part[i] = film_units(film, select((float16)(0.0f), rows->part[i], there));
-    }
+    for (uint i = 0; i < 4; ++i)
+        units.part[i] = film_units(film, select((float16)(0.0f), rows->part[i], channels_of(lanes, i, 0, channels)));
     return units;
+}
+
+/// Counts lanes in the fourth channel.
+static inline void film_cover(UnitRows* rows, uint lanes) {
+    for (uint i = 0; i < 4; ++i) rows->part[i] += convert_long16(channels_of(lanes, i, 3, 4)) & FILM_ONE;
 }
 
 /// Adds rows of four channels.
@@ -177,6 +186,7 @@ COMPILED_ONCE static uint film_add_terms(const Film* film, uint first_term, uint
     const UnitRows second = film_units_of_rows(film, &terms->second, 3, terms->lanes);
     UnitRows both;
     for (uint i = 0; i < 4; ++i) both.part[i] = first.part[i] + second.part[i];
+    if (terms->covered != 0) film_cover(&both, terms->covered);
     uint atomics = film_add_rows(film, FILM_BEAUTY, terms->pixel, &both, terms->lanes);
     if (!(film_keeps(film, first_term) || film_keeps(film, second_term) || film_keeps(film, FILM_REFLECTION) ||
           film_keeps(film, FILM_REFRACTION)))

@@ -5,12 +5,13 @@
 #include "lib/packet.h"
 
 #ifdef RAYMILL_PACKETS
-/// The closest hit of each ray.
-COMPILED_ONCE static void find_hits(const Geometry* geometry, global const Ray* rays, uint count, global Hit* hits) {
+/// Finds the closest hit of each ray. Returns the rays that miss, one bit each.
+COMPILED_ONCE static ulong find_hits(const Geometry* geometry, global const Ray* rays, uint count, global Hit* hits) {
     Packet packet;
     chunk_load(&packet.rays, rays, WORDS(Ray), false, count);
     traverse_chunk(geometry, &packet, false);
     chunk_store_hits(&packet.rays, count, hits);
+    return packet.rays.rays & ~chunk_found(&packet.rays);
 }
 
 /// Returns the shadow rays that are blocked, one bit each. blockers, of RAYS_A_WORK_ITEM places, gets some primitive
@@ -20,17 +21,18 @@ COMPILED_ONCE static ulong find_blockers(const Geometry* geometry, global const 
     Packet packet;
     chunk_load(&packet.rays, rays, WORDS(ShadowRay), true, count);
     traverse_chunk(geometry, &packet, true);
-    ulong blocked = 0;
-    for (uint group = 0; group < GROUPS; ++group) {
-        const uint16 primitive = packet.rays.best_primitive[group];
-        blocked |= (ulong)lane_mask16(primitive != NO_INDEX) << GROUP * group;
-        vstore16(primitive, group, blockers);
-    }
-    return blocked;
+    for (uint group = 0; group < GROUPS; ++group) vstore16(packet.rays.best_primitive[group], group, blockers);
+    return chunk_found(&packet.rays);
 }
 #else
-static void find_hits(const Geometry* geometry, global const Ray* rays, uint count, global Hit* hits) {
-    for (uint i = 0; i < count; ++i) hits[i] = closest_hit(geometry, load3(rays[i].origin), load3(rays[i].direction));
+static ulong find_hits(const Geometry* geometry, global const Ray* rays, uint count, global Hit* hits) {
+    ulong missed = 0;
+    for (uint i = 0; i < count; ++i) {
+        const Hit hit = closest_hit(geometry, load3(rays[i].origin), load3(rays[i].direction));
+        missed |= (ulong)(hit.primitive == NO_INDEX) << i;
+        hits[i] = hit;
+    }
+    return missed;
 }
 
 static ulong find_blockers(const Geometry* geometry, global const ShadowRay* rays, uint count, uint* blockers) {

@@ -33,8 +33,7 @@ class Capture : public testing::Test {
         const fs::path kernels = folder_.path() / "kernels";
         fs::copy(RAYMILL_KERNELS, kernels, fs::copy_options::recursive);
         std::string text = read_bytes((kernels / "intersect.cl").string());
-        const std::size_t place =
-            text.rfind("    for (uint i = begin; i < end; ++i)");  // where misses are told from hits
+        const std::size_t place = text.find("    uint misses[");  // right after the traversal
         EXPECT_NE(place, std::string::npos);
         text.insert(place, "    for (uint i = begin; i < end; ++i) hits[i].t *= 1.0001f;\n");
         write_text((kernels / "intersect.cl").string(), text);

@@ -144,12 +144,12 @@ TEST(Atomics, of_camera_rays_that_have_a_pixel_each_are_those_of_counters) {
 /// One that adds light to the film, whether its channels are not zero in units of the film.
 struct Adding {
     uint pixel;
-    std::array<bool, 3> channels;
+    std::array<bool, 4> channels;  // the fourth counts hits of camera rays
 };
 
-std::array<bool, 3> channels(const float (&a)[3], const float (&b)[3]) {
+std::array<bool, 4> channels(const float (&a)[3], const float (&b)[3]) {
     constexpr double units = 4294967296.0;
-    std::array<bool, 3> lit{};
+    std::array<bool, 4> lit{};
     for (std::size_t c = 0; c < 3; ++c)
         lit[c] =
             std::nearbyint(units * static_cast<double>(a[c])) + std::nearbyint(units * static_cast<double>(b[c])) != 0;
@@ -161,10 +161,10 @@ std::uint64_t adds(const std::vector<Adding>& items) {
     constexpr std::size_t lanes = 16;
     std::uint64_t sum = 0;
     for (std::size_t i = 0; i < items.size();) {
-        std::array<bool, 3> lit{};
+        std::array<bool, 4> lit{};
         const std::size_t begin = i;
         for (; i < items.size() && i / lanes == begin / lanes && items[i].pixel == items[begin].pixel; ++i)
-            for (std::size_t c = 0; c < 3; ++c) lit[c] |= items[i].channels[c];
+            for (std::size_t c = 0; c < 4; ++c) lit[c] |= items[i].channels[c];
         sum += static_cast<std::uint64_t>(std::ranges::count(lit, true));
     }
     return sum;
@@ -192,7 +192,6 @@ class QueueAdds {
         local_light_ = 0;
         for (std::size_t first = 0; first < rays.size(); first += CHUNK) {
             std::vector<Adding> missed, found;
-            uint covered = NO_INDEX;  // pixel of the last camera ray that hit something
             for (std::size_t i = first; i < std::min(first + CHUNK, rays.size()); ++i) {
                 float sky[3] = {0, 0, 0};
                 for (int c = 0; c < 3; ++c) sky[c] = rays[i].throughput[c] * static_cast<float>(background[c]);
@@ -200,10 +199,7 @@ class QueueAdds {
                     missed.push_back({rays[i].pixel, channels(sky, {0, 0, 0})});
                     continue;
                 }
-                found.push_back({rays[i].pixel, {true, true, true}});
-                if (rays[i].route != ROUTE_CAMERA) continue;
-                sum += rays[i].pixel != covered;
-                covered = rays[i].pixel;
+                found.push_back({rays[i].pixel, {true, true, true, rays[i].route == ROUTE_CAMERA}});
             }
             sum += adds(missed);
             local_light_ += adds(found);

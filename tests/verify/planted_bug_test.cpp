@@ -27,6 +27,7 @@ const PlantedBug bugs[] = {
     {"attenuation_off_by_1e_5", "lib/light.h", "attenuation = 1.0f / fma(", "attenuation = 1.00001f / fma(", "shade"},
     {"no_offset", "lib/surface.h", "if (!world->constants->robust_offset) return s->position;", "return s->position;",
      "shade"},
+    {"no_coverage", "shade.cl", "s->hits.route == ROUTE_CAMERA", "s->hits.route != ROUTE_CAMERA", "shade"},
     {"filter_without_transmission", "lib/transmittance.h", " * material->transmission", "", "shadow"},
     {"mirrored_sign", "lib/material.h", "lanes_fma(-2.0f * lanes_dot(direction, n), n, direction)",
      "lanes_fma(2.0f * lanes_dot(direction, n), n, direction)", "secondary"},
