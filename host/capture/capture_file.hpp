@@ -15,7 +15,7 @@
 
 namespace raymill::capture {
 
-inline constexpr std::uint32_t format_version = 1;
+inline constexpr std::uint32_t format_version = 2;
 
 /// The file appears whole or not at all. Throws OutputError.
 void write_capture(const std::string& file, const Capture& capture);

@@ -32,10 +32,21 @@ std::optional<std::string> InputFiles::read(const std::string& path, std::string
     stream.read(bytes.data(), static_cast<std::streamsize>(size));
     bytes.resize(static_cast<std::size_t>(stream.gcount()));
 
-    const auto mix = [this](std::uint8_t byte) { hash_ = (hash_ ^ byte) * 0x100000001b3u; };
-    for (const char c : bytes) mix(static_cast<std::uint8_t>(c));
-    // The size tells "ab" + "c" from "a" + "bc".
-    for (int shift = 0; shift < 64; shift += 8) mix(static_cast<std::uint8_t>(bytes.size() >> shift));
+    // Like FNV-1a, but eight bytes a step, and what a multiplication leaves in the high bits brought down again.
+    const auto mix = [this](std::uint64_t word) {
+        hash_ = (hash_ ^ word) * 0x100000001b3u;
+        hash_ ^= hash_ >> 32;
+    };
+    std::uint64_t word = 0;
+    std::size_t mixed = 0;
+    for (; mixed + sizeof word <= bytes.size(); mixed += sizeof word) {
+        std::memcpy(&word, bytes.data() + mixed, sizeof word);
+        mix(word);
+    }
+    word = 0;
+    std::memcpy(&word, bytes.data() + mixed, bytes.size() - mixed);
+    mix(word);
+    mix(bytes.size());  // tells "ab" + "c" from "a" + "bc"
     return bytes;
 }
 

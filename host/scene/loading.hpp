@@ -9,7 +9,8 @@
 
 namespace raymill {
 
-/// Reads whole files and hashes their bytes, in the order of reading (FNV-1a, 64 bit, each file followed by its size).
+/// Reads whole files and hashes their bytes, in the order of reading: like FNV-1a, 64 bit, by words, each file followed by
+/// its size.
 class InputFiles {
   public:
     /// The file's bytes, or nothing with the reason ("No such file or directory") where it cannot be read.

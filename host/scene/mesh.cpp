@@ -1,5 +1,6 @@
 #include "scene/mesh.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -43,6 +44,13 @@ Vertex world_vertex(const IndexedMesh& mesh, const Corner& corner, const Transfo
     return {{position.x, position.y, position.z}, {normal.x, normal.y, normal.z}, {uv.x, uv.y}};
 }
 
+/// Makes room without giving up that a vector grows by factors, however many meshes come one by one.
+template <typename T>
+void reserve_more(std::vector<T>& values, std::size_t more) {
+    const std::size_t needed = values.size() + more;
+    if (needed > values.capacity()) values.reserve(std::max(needed, 2 * values.capacity()));
+}
+
 }  // namespace
 
 void append_mesh(Scene& scene, const IndexedMesh& mesh, const Transform& transform, std::uint32_t material,
@@ -50,7 +58,8 @@ void append_mesh(Scene& scene, const IndexedMesh& mesh, const Transform& transfo
     const auto first = static_cast<std::uint32_t>(scene.vertices.size());
     const bool mirrors = transform.mirrors();
     CornerIndex index(mesh.triangles.size() * 3);
-    scene.triangles.reserve(scene.triangles.size() + mesh.triangles.size());
+    reserve_more(scene.triangles, mesh.triangles.size());
+    reserve_more(scene.vertices, mesh.positions.size());  // more where corners share positions only
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         Triangle triangle{};
         for (int c = 0; c < 3; ++c) {

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
+#include <functional>
 #include <map>
 #include <string_view>
 
@@ -14,30 +16,40 @@ namespace {
 constexpr std::size_t most_errors = 20;
 constexpr std::size_t most_corners = 10000;  // of a polygon: ear clipping takes quadratic time
 
-/// Cuts `text` at the first of its characters that is in `stops`; the head is returned.
-std::string_view take_until(std::string_view& text, const char* stops) {
-    const std::size_t end = std::min(text.find_first_of(stops), text.size());
+/// Cuts `text` at the first of its characters that stops it; the head is returned. Large files have a hundred million
+/// characters: a search for a set of them by the standard library takes half of the time to read one.
+template <typename Stops>
+std::string_view take_until(std::string_view& text, Stops stops) {
+    const auto end = static_cast<std::size_t>(std::ranges::find_if(text, stops) - text.begin());
     const std::string_view head = text.substr(0, end);
     text.remove_prefix(end);
     return head;
 }
 
+constexpr auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
+constexpr auto ends_line = [](char c) { return c == '\n' || c == '\r'; };
+constexpr auto is_slash = [](char c) { return c == '/'; };
+
 std::string_view trimmed(std::string_view text) {
-    const std::size_t first = text.find_first_not_of(" \t");
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+    take_until(text, std::not_fn(is_blank));
+    while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+    return text;
 }
 
 /// The next word of the line, empty at its end or where a comment begins.
 std::string_view next_word(std::string_view& line) {
-    line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+    take_until(line, std::not_fn(is_blank));
     if (line.starts_with('#')) line = {};
-    return take_until(line, " \t");
+    return take_until(line, is_blank);
 }
 
 class Reader {
   public:
-    Reader(const std::string& text, const std::string& file) : text_(text), file_name_(file) {}
+    Reader(const std::string& text, const std::string& file) : text_(text), file_name_(file) {
+        // About what files of triangles have: memory that is not touched costs nothing, but to grow costs touching twice.
+        corners_.reserve(text.size() / 16);
+        polygons_.reserve(text.size() / 48);
+    }
 
     ObjFile read() {
         while (!text_.empty() && file_.errors.size() < most_errors) read_line();
@@ -63,7 +75,7 @@ class Reader {
 
     std::string_view take_line() {
         ++line_;
-        const std::string_view line = take_until(text_, "\n\r");
+        const std::string_view line = take_until(text_, ends_line);
         if (text_.starts_with("\r\n"))
             text_.remove_prefix(2);
         else if (!text_.empty())
@@ -173,10 +185,10 @@ class Reader {
 
     Corner read_corner(std::string_view word) {
         Corner corner;
-        corner.position = resolve(take_until(word, "/"), file_.mesh.positions.size(), "vertex");
+        corner.position = resolve(take_until(word, is_slash), file_.mesh.positions.size(), "vertex");
         if (word.empty()) return corner;
         word.remove_prefix(1);
-        const std::string_view uv = take_until(word, "/");
+        const std::string_view uv = take_until(word, is_slash);
         if (!uv.empty()) corner.uv = resolve(uv, file_.mesh.uvs.size(), "texture coordinate");
         if (word.empty()) return corner;
         word.remove_prefix(1);

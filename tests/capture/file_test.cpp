@@ -1,6 +1,8 @@
 // Captures on disk: what is read back, and what is refused.
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include <cstring>
 
 #include "capture/capture_file.hpp"
@@ -127,7 +129,7 @@ TEST_F(CaptureFile, that_is_foreign_is_refused) {
 TEST_F(CaptureFile, of_another_version_is_refused_by_both_numbers) {
     std::string bytes = read_bytes(file_);
     bytes[8] = 7;
-    expect_refusal(bytes, "version 7, and this program reads version 1");
+    expect_refusal(bytes, fmt::format("version 7, and this program reads version {}", format_version));
 }
 
 /// The file's bytes with other ones at a place behind the header, and the checksum that belongs to them.
