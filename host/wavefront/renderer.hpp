@@ -37,7 +37,7 @@ inline constexpr std::array compiled_stages = {profile::Stage::generate, profile
                                                profile::Stage::secondary};
 
 /// What is left to the helper: about half of the work, and not what is compiled first.
-inline constexpr std::array compile_helper_stages = {profile::Stage::shade, profile::Stage::secondary};
+inline constexpr std::array compile_helper_stages = {profile::Stage::shadow, profile::Stage::shade};
 
 struct RayCounts {
     std::uint64_t camera = 0;
