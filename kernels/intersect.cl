@@ -8,14 +8,15 @@
 #include "lib/surface.h"
 #include "lib/trace.h"
 
-/// What up to sixteen rays bring home that miss everything.
+/// What those rays of a chunk bring home that miss everything, up to sixteen, named by `place`.
 COMPILED_ONCE static uint add_background(const Film* film, global const Texture* textures, global const float* texels,
-                                  const HitLanes* rays) {
-    const Lanes3 sky = environment_radiance(textures, texels, film->constants, rays->direction);
-    Terms terms = {.lanes = first_lanes(rays->count), .second = {{(float16)(0.0f)}}};
-    vstore16(rays->pixel, 0, terms.pixel);
-    vstore16(rays->route, 0, terms.route);
-    terms.first = rows_of(lanes_mul(rays->throughput, sky), (float16)(0.0f));
+                                         global const Ray* rays, global const Hit* hits, const uint* place, uint count) {
+    const HitLanes lanes = gather_hits(rays, hits, place, count);
+    const Lanes3 sky = environment_radiance(textures, texels, film->constants, lanes.direction);
+    Terms terms = {.lanes = first_lanes(count), .second = {{(float16)(0.0f)}}};
+    vstore16(lanes.pixel, 0, terms.pixel);
+    vstore16(lanes.route, 0, terms.route);
+    terms.first = rows_of(lanes_mul(lanes.throughput, sky), (float16)(0.0f));
     return film_add_terms(film, FILM_EMISSION, FILM_EMISSION, &terms);
 }
 
@@ -34,10 +35,8 @@ kernel void intersect(global const Ray* rays, uint first_ray, uint count, global
     ulong missing = find_hits(&geometry, rays + first_ray + begin, end - begin, hits + begin);
     uint misses[RAYS_A_WORK_ITEM], missed = 0, atomics = 0;
     for (; missing != 0; missing &= missing - 1) misses[missed++] = begin + lowest_bit64(missing);
-    for (uint first = 0; first < missed; first += LANES) {
-        const uint in_lanes = min((uint)LANES, missed - first);
-        const HitLanes lanes = gather_hits(rays + first_ray, hits, misses + first, in_lanes);
-        atomics += add_background(&film, textures, texels, &lanes);
-    }
+    for (uint first = 0; first < missed; first += LANES)
+        atomics += add_background(&film, textures, texels, rays + first_ray, hits, misses + first,
+                                  min((uint)LANES, missed - first));
     film_count_atomics(&film, atomics);
 }

@@ -29,6 +29,36 @@ static inline float3 light_left(const Geometry* geometry, const World* world, gl
     return transmittance(geometry, world, load3(ray->origin), load3(ray->direction), ray->t_max);
 }
 
+/// Brings home what is left of the light of up to sixteen rays in a row. Something, `blockers`, is in the way of those that
+/// have a bit set. `blocked` grows by rays of which nothing is left. Returns the atomic operations.
+COMPILED_ONCE static uint add_light(const Film* film, const Geometry* geometry, const World* world,
+                                    global const ShadowRay* rays, uint count, uint in_the_way, const uint* blockers,
+                                    uint* blocked) {
+    Terms terms;
+    load_terms(rays, count, &terms);
+    // What is left of the light, and a count: the shadow plane's, where the camera looks.
+    Rows arriving = {{(float16)(1.0f), (float16)(1.0f), (float16)(1.0f), (float16)(1.0f)}};
+    const uint lanes = terms.lanes;
+    for (uint rest = in_the_way & lanes; rest != 0; rest &= rest - 1) {
+        const uint lane = lowest_bit(rest);
+        const float3 left = light_left(geometry, world, rays + lane, blockers[lane]);
+        ((float4*)&arriving)[lane] = (float4)(left, 1.0f);
+        if (any(left != 0.0f)) {
+            ((float4*)&terms.first)[lane] *= (float4)(left, 0.0f);
+            ((float4*)&terms.second)[lane] *= (float4)(left, 0.0f);
+        } else {
+            terms.lanes &= ~(1u << lane);
+            ++*blocked;
+        }
+    }
+    uint atomics = 0;
+    if (film_keeps(film, FILM_SHADOW)) {
+        const uint seen = lanes & lanes_of_route(terms.route, ROUTE_CAMERA);
+        atomics = film_add_values(film, FILM_SHADOW, terms.pixel, &arriving, seen);
+    }
+    return atomics + film_add_terms(film, FILM_DIFFUSE, FILM_SPECULAR, &terms);
+}
+
 /// One work-item a segment, or one ray where rays are traced alone.
 kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shadow_counts, uint segment_count,
                    global const BvhNode* nodes, global const TriangleBlock* triangle_blocks,
@@ -49,31 +79,9 @@ kernel void shadow(global const ShadowRay* shadow_rays, global const uint* shado
     ulong in_the_way = 0;
     if (constants->shadows != SHADOWS_NONE) in_the_way = find_blockers(&geometry, rays, count, blockers);
     uint blocked = 0, atomics = 0;
-    for (uint begin = 0; begin < count; begin += LANES) {
-        global const ShadowRay* some = rays + begin;
-        Terms terms;
-        load_terms(some, min((uint)LANES, count - begin), &terms);
-        // What is left of the light, and a count: the shadow plane's, where the camera looks.
-        Rows arriving = {{(float16)(1.0f), (float16)(1.0f), (float16)(1.0f), (float16)(1.0f)}};
-        const uint lanes = terms.lanes;
-        for (uint rest = (uint)(in_the_way >> begin) & lanes; rest != 0; rest &= rest - 1) {
-            const uint lane = lowest_bit(rest);
-            const float3 left = light_left(&geometry, &world, some + lane, blockers[begin + lane]);
-            ((float4*)&arriving)[lane] = (float4)(left, 1.0f);
-            if (any(left != 0.0f)) {
-                ((float4*)&terms.first)[lane] *= (float4)(left, 0.0f);
-                ((float4*)&terms.second)[lane] *= (float4)(left, 0.0f);
-            } else {
-                terms.lanes &= ~(1u << lane);
-                ++blocked;
-            }
-        }
-        if (film_keeps(&film, FILM_SHADOW)) {
-            const uint seen = lanes & lanes_of_route(terms.route, ROUTE_CAMERA);
-            atomics += film_add_values(&film, FILM_SHADOW, terms.pixel, &arriving, seen);
-        }
-        atomics += film_add_terms(&film, FILM_DIFFUSE, FILM_SPECULAR, &terms);
-    }
+    for (uint begin = 0; begin < count; begin += LANES)
+        atomics += add_light(&film, &geometry, &world, rays + begin, min((uint)LANES, count - begin),
+                             (uint)(in_the_way >> begin), blockers + begin, &blocked);
     atomics += film_count(&counters->shadow_traced, count);
     atomics += film_count(&counters->shadow_blocked, blocked);
     film_count_atomics(&film, atomics);
