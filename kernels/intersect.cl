@@ -1,6 +1,7 @@
 // The closest hit of every ray of a batch; rays that miss bring home the background.
 // Reads:  rays [first_ray, first_ray + count).
-// Writes: hits [0, count); film, where a ray misses; counters->children, which `secondary` of the same wave counts from 0.
+// Writes: hits [0, count); film, where a ray misses; counters->children, which `secondary` of the same wave counts from
+//         0.
 // Next:   shade.
 
 #include "lib/environment.h"
@@ -10,7 +11,8 @@
 
 /// What those rays of a chunk bring home that miss everything, up to sixteen, named by `place`.
 COMPILED_ONCE static uint add_background(const Film* film, global const Texture* textures, global const float* texels,
-                                         global const Ray* rays, global const Hit* hits, const uint* place, uint count) {
+                                         global const Ray* rays, global const Hit* hits, const uint* place,
+                                         uint count) {
     const HitLanes lanes = gather_hits(rays, hits, place, count);
     const Lanes3 sky = environment_radiance(textures, texels, film->constants, lanes.direction);
     Terms terms = {.lanes = first_lanes(count), .second = {{(float16)(0.0f)}}};

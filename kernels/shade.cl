@@ -1,14 +1,14 @@
-// Local illumination: ambient and emission, and one shadow ray for each light sample that would add something.
+// Local illumination: ambient, emission, coverage, and one shadow ray for each light sample that would add something.
 // Reads:  rays [first_ray, first_ray + count), hits [0, count), light samples [first_slot, first_slot + slot_count).
-// Writes: film (ambient, emission and coverage, with slot 0); shadow_rays and shadow_counts, a segment of CHUNK rays for each
-//         chunk and light sample, so that its rays go to one light in the order of their pixels; counters->shadow_rays,
-//         and with slot 0 missed and passing, where the frame is profiled.
+// Writes: film (ambient, emission and coverage, with slot 0); shadow_rays and shadow_counts, a segment of CHUNK rays
+//         for each chunk and light sample, so that its rays go to one light in the order of their pixels;
+//         counters->shadow_rays, and with slot 0 missed and passing, where the frame is profiled.
 // Next:   shadow.
 
 #include "lib/film.h"
 #include "lib/lighting.h"
 
-/// Ambient light and emission.
+/// Ambient light, emission, and the coverage of camera rays.
 COMPILED_ONCE static uint add_local_light(const Film* film, const World* world, const Shading* s) {
     Terms terms;
     terms.lanes = first_lanes(s->hits.count);
@@ -30,8 +30,8 @@ typedef struct {
     uint pushed[SHADOW_SAMPLES];
 } ChunkLights;
 
-/// Shades those hits of a chunk that `place` names, up to sixteen; `passing` grows by those that pass light on. Returns the
-/// atomic operations.
+/// Shades those hits of a chunk that `place` names, up to sixteen; `passing` grows by those that pass light on. Returns
+/// the atomic operations.
 COMPILED_ONCE static uint shade_lanes(const Film* film, const World* world, global const Ray* rays,
                                       global const Hit* hits, const uint* place, uint count, ChunkLights* l,
                                       uint* passing) {
@@ -73,8 +73,8 @@ kernel void shade(global const Ray* rays, uint first_ray, uint count, global con
                      {0}};
     uint passing = 0, atomics = 0;
     for (uint first = 0; first < found; first += LANES)
-        atomics += shade_lanes(&film, &world, rays + first_ray, hits, places + first, min((uint)LANES, found - first), &l,
-                               &passing);
+        atomics += shade_lanes(&film, &world, rays + first_ray, hits, places + first, min((uint)LANES, found - first),
+                               &l, &passing);
 
     uint total = 0;
     for (uint k = 0; k < slot_count; ++k) {

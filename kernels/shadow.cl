@@ -29,8 +29,8 @@ static inline float3 light_left(const Geometry* geometry, const World* world, gl
     return transmittance(geometry, world, load3(ray->origin), load3(ray->direction), ray->t_max);
 }
 
-/// Brings home what is left of the light of up to sixteen rays in a row. Something, `blockers`, is in the way of those that
-/// have a bit set. `blocked` grows by rays of which nothing is left. Returns the atomic operations.
+/// Brings home what is left of the light of up to sixteen rays in a row. Something, `blockers`, is in the way of those
+/// that have a bit set. `blocked` grows by rays of which nothing is left. Returns the atomic operations.
 COMPILED_ONCE static uint add_light(const Film* film, const Geometry* geometry, const World* world,
                                     global const ShadowRay* rays, uint count, uint in_the_way, const uint* blockers,
                                     uint* blocked) {

@@ -32,21 +32,16 @@ std::optional<std::string> InputFiles::read(const std::string& path, std::string
     stream.read(bytes.data(), static_cast<std::streamsize>(size));
     bytes.resize(static_cast<std::size_t>(stream.gcount()));
 
-    // Like FNV-1a, but eight bytes a step, and what a multiplication leaves in the high bits brought down again.
-    const auto mix = [this](std::uint64_t word) {
-        hash_ = (hash_ ^ word) * 0x100000001b3u;
-        hash_ ^= hash_ >> 32;
-    };
     std::uint64_t word = 0;
-    std::size_t mixed = 0;
-    for (; mixed + sizeof word <= bytes.size(); mixed += sizeof word) {
-        std::memcpy(&word, bytes.data() + mixed, sizeof word);
-        mix(word);
+    std::size_t hashed = 0;
+    for (; hashed + sizeof word <= bytes.size(); hashed += sizeof word) {
+        std::memcpy(&word, bytes.data() + hashed, sizeof word);
+        hash_ = hash_add(hash_, word);
     }
     word = 0;
-    std::memcpy(&word, bytes.data() + mixed, bytes.size() - mixed);
-    mix(word);
-    mix(bytes.size());  // tells "ab" + "c" from "a" + "bc"
+    std::memcpy(&word, bytes.data() + hashed, bytes.size() - hashed);
+    hash_ = hash_add(hash_, word);
+    hash_ = hash_add(hash_, bytes.size());  // tells "ab" + "c" from "a" + "bc"
     return bytes;
 }
 

@@ -5,12 +5,12 @@
 #include <optional>
 #include <string>
 
+#include "common/hash.hpp"
 #include "scene/scene.hpp"
 
 namespace raymill {
 
-/// Reads whole files and hashes their bytes, in the order of reading: like FNV-1a, 64 bit, by words, each file followed by
-/// its size.
+/// Reads whole files and hashes their bytes in the order of reading, each file followed by its size.
 class InputFiles {
   public:
     /// The file's bytes, or nothing with the reason ("No such file or directory") where it cannot be read.
@@ -18,7 +18,7 @@ class InputFiles {
     std::uint64_t hash() const { return hash_; }
 
   private:
-    std::uint64_t hash_ = 0xcbf29ce484222325u;
+    std::uint64_t hash_ = hash_start;
 };
 
 /// A scene while it is loaded. Loaders note faults and go on, so that the user sees all of them at once.

@@ -59,7 +59,7 @@ void append_mesh(Scene& scene, const IndexedMesh& mesh, const Transform& transfo
     const bool mirrors = transform.mirrors();
     CornerIndex index(mesh.triangles.size() * 3);
     reserve_more(scene.triangles, mesh.triangles.size());
-    reserve_more(scene.vertices, mesh.positions.size());  // more where corners share positions only
+    reserve_more(scene.vertices, mesh.positions.size());  // at least
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         Triangle triangle{};
         for (int c = 0; c < 3; ++c) {

@@ -46,9 +46,9 @@ std::string_view next_word(std::string_view& line) {
 class Reader {
   public:
     Reader(const std::string& text, const std::string& file) : text_(text), file_name_(file) {
-        // About what files of triangles have: memory that is not touched costs nothing, but to grow costs touching twice.
-        corners_.reserve(text.size() / 16);
-        polygons_.reserve(text.size() / 48);
+        // About what files of triangles have: to grow would touch, and copy, as much again.
+        corners_.reserve(text.size() / 20);
+        polygons_.reserve(text.size() / 60);
     }
 
     ObjFile read() {

@@ -98,6 +98,7 @@ Comparison compare_hit(const Truth& truth, const Ray& ray, const Hit& hit, const
         compare_background(c, truth, ray, added);
         return c;
     }
+    c.same("adds nothing", added.total() == Units{} && added.coverage == 0, true);
     const auto all = crossings(truth.scene, r, hit.primitive);
     const Crossing* crossing = nearest(all, expected.t);
     c.number("t", hit.t, expected.t, crossing->t_error);

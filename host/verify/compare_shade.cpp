@@ -1,4 +1,4 @@
-// The shade stage: ambient and emission, and the shadow ray of each light sample.
+// The shade stage: ambient, emission and coverage, and the shadow ray of each light sample.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -106,8 +106,10 @@ Comparison compare_unshadowed(const Truth& truth, const HitContext& context, con
     Comparison c;
     compare_units(c, "ambient", added.ambient, context.throughput * ambient * context.local);
     compare_units(c, "emission", added.emission, context.throughput * emission);
-    c.number("coverage", from_units(added.coverage), ray.route == ROUTE_CAMERA ? 1 : 0, 0);
-    if (!(c.ratio() <= 1) && context.bounds.facing < 1) c.disagree("the ray grazes the surface", context.bounds.facing);
+    const double coverage = from_units(added.coverage), covered = ray.route == ROUTE_CAMERA ? 1 : 0;
+    c.number("coverage", coverage, covered, 0);
+    if (!(c.ratio() <= 1) && context.bounds.facing < 1 && coverage == covered)
+        c.disagree("the ray grazes the surface", context.bounds.facing);
     return c;
 }
 

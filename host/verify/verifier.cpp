@@ -120,12 +120,13 @@ class Verifier {
             intersect_, chosen.size(),
             [&](std::size_t i) {
                 const std::size_t item = chosen[i];
-                return compare_hit(truth_, wave.rays[item], wave.hits[item], wave.added[item]);
+                return compare_hit(truth_, wave.rays[item], wave.hits[item], wave.added_by_intersect[item]);
             },
             [&](std::size_t i) { return describe(wave.rays[chosen[i]]) + describe(wave.hits[chosen[i]]); });
     }
 
-    /// Items are each hit's ambient and emission, where the range has the first light sample, and its light samples.
+    /// Items are each hit's ambient, emission and coverage, where the range has the first light sample, and its light
+    /// samples.
     void take_shading(const Wave& wave, SlotRange range) {
         std::vector<std::size_t> hits;
         for (std::size_t i = 0; i < wave.hits.size(); ++i)
@@ -157,7 +158,7 @@ class Verifier {
             const std::size_t item = hits[i / parts], part = i % parts;
             shade_.add(results[i], [&] {
                 const std::string hit = describe(wave.rays[item]) + describe(wave.hits[item]);
-                if (part < unshadowed) return hit + "  ambient and emission\n";
+                if (part < unshadowed) return hit + "  ambient, emission and coverage\n";
                 const std::size_t slot = range.first + part - unshadowed;
                 const ShadowItem* shadow = sent[item * slots_.size() + slot];
                 return hit + (shadow ? describe(shadow->ray) : "") +

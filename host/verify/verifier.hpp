@@ -17,7 +17,7 @@ struct VerifyOptions {
 };
 
 /// One stage's items of a wave that holds what the stage read and wrote. slots: the light samples that shade went
-/// through; ambient and emission belong to the first.
+/// through; ambient, emission and coverage belong to the first.
 StageReport verify_stage(const Scene& scene, const Wave& wave, profile::Stage stage, SlotRange slots,
                          const VerifyOptions& options);
 

@@ -69,7 +69,8 @@ void WaveRecorder::begin(const WaveView& view) {
 
 void WaveRecorder::take_hits(const WaveView& view) {
     wave_->hits = view.hits.read(device_, 0, view.rays.count);
-    wave_->added = replay_.intersect(wave_->rays);
+    wave_->added_by_intersect = replay_.intersect(wave_->rays);
+    wave_->added = wave_->added_by_intersect;
 }
 
 void WaveRecorder::take_shadow_rays(const WaveView& view) {

@@ -23,8 +23,9 @@ struct Wave {
     int depth = 0;
     bool generated = false;  // its rays are fresh from the camera
     std::vector<Ray> rays;
-    std::vector<Hit> hits;            // one a ray
-    std::vector<Contribution> added;  // one a ray: background, ambient, emission, coverage
+    std::vector<Hit> hits;                         // one a ray
+    std::vector<Contribution> added;               // one a ray: background, ambient, emission, coverage
+    std::vector<Contribution> added_by_intersect;  // of that
     std::vector<ShadowItem> shadow_rays;
     std::vector<Ray> children;
     std::vector<std::string> replay_faults;  // where a stage gave other results for an item in another pixel

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "common/child_process.hpp"
+#include "common/hash.hpp"
 #include "device/kernel_cache.hpp"
 #include "wavefront/records.hpp"
 
@@ -16,8 +17,8 @@ namespace raymill {
 
 namespace {
 
-/// Consecutive ranges of at most SHADOW_SAMPLES light samples; one empty range without lights, for ambient and
-/// emission.
+/// Consecutive ranges of at most SHADOW_SAMPLES light samples; one empty range without lights, for ambient,
+/// emission and coverage.
 std::vector<SlotRange> make_slot_ranges(uint slots) {
     std::vector<SlotRange> ranges;
     for (uint first = 0; first < slots; first += SHADOW_SAMPLES)
@@ -55,15 +56,11 @@ namespace {
 std::uint64_t hash_of(std::span<const cl_long> sums) {
     // A multiplication has to wait for the one before: each channel has a chain of its own.
     std::array<std::uint64_t, FILM_CHANNELS> chains;
-    chains.fill(0xcbf29ce484222325u);
-    const auto add = [](std::uint64_t h, std::uint64_t word) {
-        h = (h ^ word) * 0x100000001b3u;
-        return h ^ h >> 32;  // else high bits would never come down
-    };
+    chains.fill(hash_start);
     for (std::size_t i = 0; i < sums.size(); i += FILM_CHANNELS)
         for (std::size_t channel = 0; channel < FILM_CHANNELS; ++channel)
-            chains[channel] = add(chains[channel], static_cast<std::uint64_t>(sums[i + channel]));
-    return std::accumulate(chains.begin(), chains.end(), std::uint64_t{0}, add);
+            chains[channel] = hash_add(chains[channel], static_cast<std::uint64_t>(sums[i + channel]));
+    return std::accumulate(chains.begin(), chains.end(), std::uint64_t{0}, hash_add);
 }
 
 }  // namespace

@@ -179,7 +179,8 @@ static inline uint lanes_of_route(const uint* routes, uint route) {
     return lane_mask16(vload16(0, routes) == route);
 }
 
-/// Adds the radiance of two terms. The beauty gets the sum of their integers, so that the planes still add up to it.
+/// Adds the radiance of two terms. The beauty gets the sum of their integers, so that the planes still add up to it,
+/// and the coverage.
 /// What camera hits send goes to the terms' own planes, the rest to that of the branch which the path took first.
 COMPILED_ONCE static uint film_add_terms(const Film* film, uint first_term, uint second_term, const Terms* terms) {
     const UnitRows first = film_units_of_rows(film, &terms->first, 3, terms->lanes);

@@ -8,10 +8,13 @@
 #include <array>
 #include <cstdlib>
 #include <deque>
-#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "common/error.hpp"
 #include "profile/statistics.hpp"
+#include "scene/error.hpp"
 #include "wavefront/renderer.hpp"
 
 namespace {
@@ -84,17 +87,11 @@ bool measure(const Arguments& a) {
     if (a.spp > 0) scene.settings.spp = a.spp;
     const Bvh bvh = build_bvh(scene.vertices, scene.triangles, scene.spheres, {a.threads});
     std::deque<Renderer> renderers;
-    bool same = true;
-    std::vector<float> picture;
     for (const std::string& folder : a.folders) {
         RenderOptions options;
         options.keep_sums = false;
         options.kernel_dir = folder;
-        const Frame frame = renderers.emplace_back(device, scene, bvh, options).render();  // compiles the kernels, too
-        if (picture.empty()) picture = frame.rgba;
-        if (frame.rgba == picture) continue;
-        fmt::print("{}: ANOTHER PICTURE\n", folder);
-        same = false;
+        renderers.emplace_back(device, scene, bvh, options).render();  // compiles the kernels, too
     }
     std::vector<Times> times(renderers.size());
     for (std::size_t round = 0; round < static_cast<std::size_t>(a.rounds); ++round)
@@ -102,7 +99,13 @@ bool measure(const Arguments& a) {
             const std::size_t turn = (i + round) % renderers.size();  // none always follows the same
             render_once(renderers[turn], times[turn]);
         }
-    for (std::size_t i = 0; i < times.size(); ++i) print(a.folders[i], times[0], times[i]);
+    bool same = true;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        print(a.folders[i], times[0], times[i]);
+        if (renderers[i].hash_film() == renderers[0].hash_film()) continue;
+        fmt::print("  ANOTHER PICTURE\n");
+        same = false;
+    }
     return same;
 }
 
@@ -122,6 +125,9 @@ int main(int argc, char** argv) {
         // As the program does: workers that stay where they are. It must be set before OpenCL is loaded.
         setenv("POCL_AFFINITY", "1", 0);
         return measure(arguments) ? 0 : failed;
+    } catch (const SceneError& error) {
+        fmt::print(stderr, "raymill_kernels: {}\n", error.what());
+        return bad_input;
     } catch (const UsageError& error) {
         fmt::print(stderr, "raymill_kernels: {}\n", error.what());
         return bad_input;

@@ -12,6 +12,7 @@
 #include "common/error.hpp"
 #include "profile/statistics.hpp"
 #include "profile/stopwatch.hpp"
+#include "scene/error.hpp"
 #include "wavefront/renderer.hpp"
 
 namespace {
@@ -109,6 +110,9 @@ int main(int argc, char** argv) {
         const Device device = open_device("", arguments.threads);
         for (const std::string& file : arguments.scenes) measure_scene(arguments, device, file);
         return 0;
+    } catch (const SceneError& error) {
+        fmt::print(stderr, "raymill_profile_cost: {}\n", error.what());
+        return bad_input;
     } catch (const UsageError& error) {
         fmt::print(stderr, "raymill_profile_cost: {}\n", error.what());
         return bad_input;

@@ -57,8 +57,9 @@ TEST(Film, only_camera_rays_that_hit_count_as_coverage) {
     const IntersectResult found = rig.intersect(rays);
     const FilmState shaded = rig.shade(rays, std::span(found.hits).first(rays.size()), 0, 0).film;
     for (uint i = 0; i < rays.size(); ++i) {
+        EXPECT_EQ(found.film.at(i, 0), i % 2 == 0 ? 0 : film_units(1)) << i;
         EXPECT_EQ(found.film.at(i, 3), 0) << i;
-        EXPECT_EQ(shaded.at(i, 3), i == 0 ? std::int64_t{1} << 32 : 0) << i;
+        EXPECT_EQ(shaded.at(i, 3), i == 0 ? FILM_ONE : 0) << i;
     }
 }
 
@@ -67,20 +68,42 @@ TEST(Film, coverage_counts_the_hits_of_a_pixel_s_samples) {
     add_sphere(scene, {0, 0, 5}, 1);
     Random random(4);
     std::vector<Ray> rays;
-    std::vector<std::int64_t> expected(21, 0);
+    std::vector<std::int64_t> expected(21, 0), missing(21, 0);
     for (const uint samples : {3u, 1u, 70u, 16u, 40u, 2u}) {
         const uint pixel = random.below(20);
         for (uint i = 0; i < samples; ++i) {
             const bool hits = random.below(3) > 0;
             rays.push_back(make_ray({0, 0, 0}, {0, 0, hits ? 1.0f : -1.0f}, pixel));
-            if (hits) expected[pixel] += FILM_ONE;
+            (hits ? expected : missing)[pixel] += FILM_ONE;
         }
     }
     rays.push_back(make_ray({0, 0, 0}, {0, 0, -1}, 20));
+    missing[20] = FILM_ONE;
     const KernelRig rig(scene);
     const IntersectResult found = rig.intersect(rays);
     const FilmState film = rig.shade(rays, std::span(found.hits).first(rays.size()), 0, 0).film;
-    for (uint pixel = 0; pixel < expected.size(); ++pixel) EXPECT_EQ(film.at(pixel, 3), expected[pixel]) << pixel;
+    for (uint pixel = 0; pixel < expected.size(); ++pixel) {
+        EXPECT_EQ(film.at(pixel, 3), expected[pixel]) << pixel;
+        EXPECT_EQ(found.film.at(pixel, 0), missing[pixel]) << pixel;  // of a background of 1
+    }
+}
+
+TEST(Film, plain_adds_count_the_coverage_of_atomic_ones) {
+    Scene scene = nothing_but_background();
+    scene.settings.background = {0, 0, 0};
+    scene.lights.push_back({AmbientLight{{0.5f, 0.25f, 0.125f}}});
+    add_sphere(scene, {0, 0, 5}, 1);
+    std::vector<Ray> rays;
+    for (uint i = 0; i < 150; ++i) {
+        rays.push_back(make_ray({0, 0, 0}, {0, 0, i % 7 == 0 ? -1.0f : 1.0f}, i));
+        rays.back().route = i % 5 == 0 ? ROUTE_REFLECTED : ROUTE_CAMERA;
+    }
+    const KernelRig rig(scene);
+    const IntersectResult found = rig.intersect(rays);
+    const std::span hits = std::span(found.hits).first(rays.size());
+    const FilmState atomic = rig.shade(rays, hits, 0, 0).film, plain = rig.shade(rays, hits, 0, 0, 0, true).film;
+    EXPECT_EQ(plain.sums, atomic.sums);
+    for (uint i = 0; i < rays.size(); ++i) EXPECT_EQ(plain.at(i, 3), i % 7 == 0 || i % 5 == 0 ? 0 : FILM_ONE) << i;
 }
 
 TEST(Film, what_is_not_a_number_is_left_out_and_counted) {

@@ -154,12 +154,13 @@ IntersectResult KernelRig::intersect(std::span<const Ray> rays, uint first, bool
 }
 
 ShadeResult KernelRig::shade(std::span<const Ray> rays, std::span<const Hit> hits, uint first_slot, uint slot_count,
-                             uint first) const {
+                             uint first, bool pixels_once) const {
     const Buffer<Ray> queue = filled(rays);
     const Buffer<Hit> hit_queue = filled(hits);
     const std::size_t segments = std::size_t{Stages::chunks(static_cast<uint>(hits.size()))} * slot_count;
     ShadowQueue shadow{guarded<ShadowRay>(segments * CHUNK), guarded<uint>(segments)};
     Film film = parts_->film_for(rays);
+    film.pixels_once = pixels_once;
     stages().shade(parts_->scene, {queue, first, static_cast<uint>(hits.size())}, hit_queue, {first_slot, slot_count},
                    shadow, film);
     return {shadow.rays.read(device()), shadow.counts.read(device()), read(film)};

@@ -85,7 +85,7 @@ class KernelRig {
                               int launches = 1) const;
     /// hits[i] belongs to rays[first + i].
     ShadeResult shade(std::span<const Ray> rays, std::span<const Hit> hits, uint first_slot, uint slot_count,
-                      uint first = 0) const;
+                      uint first = 0, bool pixels_once = false) const;
     /// hits[i] belongs to rays[first + i].
     FilmState features(std::span<const Ray> rays, std::span<const Hit> hits, uint depth, uint first = 0) const;
     /// rays: CHUNK for each of the counts. pixels_once: no two of them share a pixel.

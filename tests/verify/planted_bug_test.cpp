@@ -28,6 +28,8 @@ const PlantedBug bugs[] = {
     {"no_offset", "lib/surface.h", "if (!world->constants->robust_offset) return s->position;", "return s->position;",
      "shade"},
     {"no_coverage", "shade.cl", "s->hits.route == ROUTE_CAMERA", "s->hits.route != ROUTE_CAMERA", "shade"},
+    {"coverage_of_all_routes", "shade.cl", "lane_mask16(s->hits.route == ROUTE_CAMERA) & terms.lanes", "terms.lanes",
+     "film"},
     {"filter_without_transmission", "lib/transmittance.h", " * material->transmission", "", "shadow"},
     {"mirrored_sign", "lib/material.h", "lanes_fma(-2.0f * lanes_dot(direction, n), n, direction)",
      "lanes_fma(2.0f * lanes_dot(direction, n), n, direction)", "secondary"},
