@@ -6,15 +6,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <deque>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "common/error.hpp"
 #include "profile/statistics.hpp"
-#include "scene/error.hpp"
+#include "program.hpp"
 #include "wavefront/renderer.hpp"
 
 namespace {
@@ -24,9 +22,6 @@ using profile::Detail;
 using profile::Quartiles;
 using profile::quartiles;
 using profile::Stage;
-
-constexpr int failed = 1;
-constexpr int bad_input = 2;
 
 struct Arguments {
     std::string scene;
@@ -115,24 +110,5 @@ int main(int argc, char** argv) {
     Arguments arguments;
     CLI::App app("Measures the kernels of several folders beside each other, frame by frame in turns.");
     add_options(app, arguments);
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-        const int status = app.exit(error);
-        return status == 0 ? 0 : bad_input;
-    }
-    try {
-        // As the program does: workers that stay where they are. It must be set before OpenCL is loaded.
-        setenv("POCL_AFFINITY", "1", 0);
-        return measure(arguments) ? 0 : failed;
-    } catch (const SceneError& error) {
-        fmt::print(stderr, "raymill_kernels: {}\n", error.what());
-        return bad_input;
-    } catch (const UsageError& error) {
-        fmt::print(stderr, "raymill_kernels: {}\n", error.what());
-        return bad_input;
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "raymill_kernels: {}\n", error.what());
-        return failed;
-    }
+    return raymill::bench::run_program("raymill_kernels", app, argc, argv, [&] { return measure(arguments); });
 }

@@ -5,14 +5,12 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <filesystem>
 #include <map>
 
-#include "common/error.hpp"
 #include "profile/statistics.hpp"
 #include "profile/stopwatch.hpp"
-#include "scene/error.hpp"
+#include "program.hpp"
 #include "wavefront/renderer.hpp"
 
 namespace {
@@ -23,9 +21,6 @@ using profile::Detail;
 using profile::Quartiles;
 using profile::quartiles;
 using profile::seconds_of;
-
-constexpr int failed = 1;
-constexpr int bad_input = 2;
 
 struct Arguments {
     std::vector<std::string> scenes;
@@ -98,26 +93,9 @@ int main(int argc, char** argv) {
     Arguments arguments;
     CLI::App app("Measures what profiling a frame costs.");
     add_options(app, arguments);
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-        const int status = app.exit(error);
-        return status == 0 ? 0 : bad_input;
-    }
-    try {
-        // As the program does: workers that stay where they are. It must be set before OpenCL is loaded.
-        setenv("POCL_AFFINITY", "1", 0);
+    return raymill::bench::run_program("raymill_profile_cost", app, argc, argv, [&] {
         const Device device = open_device("", arguments.threads);
         for (const std::string& file : arguments.scenes) measure_scene(arguments, device, file);
-        return 0;
-    } catch (const SceneError& error) {
-        fmt::print(stderr, "raymill_profile_cost: {}\n", error.what());
-        return bad_input;
-    } catch (const UsageError& error) {
-        fmt::print(stderr, "raymill_profile_cost: {}\n", error.what());
-        return bad_input;
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "raymill_profile_cost: {}\n", error.what());
-        return failed;
-    }
+        return true;
+    });
 }
