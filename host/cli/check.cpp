@@ -69,9 +69,9 @@ void print_memory(const MemoryPlan& plan, const DeviceInfo& device) {
     fmt::print("device      {}\n", device.name);
     fmt::print("memory      {} at most on the device: geometry {}, textures {}, film {},\n", human_bytes(plan.total()),
                human_bytes(plan.geometry), human_bytes(plan.textures), human_bytes(plan.film));
-    fmt::print("            {} ray queues for batches of {} rays {}, hits {}, shadow rays {}\n", plan.queues,
-               plan.queue_capacity, human_bytes(plan.ray_queues), human_bytes(plan.hits),
-               human_bytes(plan.shadow_queue));
+    fmt::print("            {}{} ray queues for batches of {} rays {}, hits {}, shadow rays {}\n",
+               plan.pipelines > 1 ? fmt::format("{} times ", plan.pipelines) : "", plan.queues, plan.queue_capacity,
+               human_bytes(plan.ray_queues), human_bytes(plan.hits), human_bytes(plan.shadow_queue));
     // The program keeps what it uploads, and reads the film back.
     fmt::print("            {} beside that in the program, for the scene, its hierarchy and the film\n",
                human_bytes(plan.geometry + plan.textures + plan.film));

@@ -11,9 +11,11 @@ namespace {
 // An interrupt may end a frame, and also make a device fail: when a signal comes, LLVM removes the files that it is
 // about to write, and the kernels do not build. Neither says anything of the setting.
 
-/// The first wave alone: it compiles or loads every kernel and touches the memory of every queue that it reaches.
+/// The first wave of each pipeline alone: they compile or load every kernel and touch the memory of every queue that they
+/// reach.
 void warm_up(Renderer& renderer) {
-    renderer.render([](double) { return false; });
+    int waves = renderer.memory().pipelines;
+    renderer.render([&](double) { return --waves > 0; });
 }
 
 bool is_whole(const Frame& frame) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 
 #include "wavefront/records.hpp"
 
@@ -10,26 +11,35 @@ namespace raymill {
 
 namespace {
 
-constexpr std::uint64_t default_capacity = 1u << 16;
-constexpr std::uint64_t smallest_default = CHUNK;
+constexpr std::uint64_t rays_a_compute_unit = 1u << 13;  // of a wave: what they take stays in the nearer caches
+constexpr std::uint64_t smallest_default = CHUNK, largest_default = 1u << 20;
 
-MemoryPlan plan_with(const Scene& scene, const Bvh& bvh, const FilmPlanes& planes, std::uint64_t capacity) {
+/// A power of two, so that halves of it are whole chunks.
+std::uint64_t default_capacity(const DeviceInfo& device) {
+    const std::uint64_t units = std::max(device.compute_units, 1u);
+    return std::min(std::bit_floor(units * rays_a_compute_unit), largest_default);
+}
+
+MemoryPlan plan_with(const Scene& scene, const Bvh& bvh, const FilmPlanes& planes, std::uint64_t capacity,
+                     int most_pipelines) {
     const std::uint64_t depth = spawns_secondary_rays(scene) ? static_cast<std::uint64_t>(scene.settings.depth) : 0;
     const std::uint64_t chunks = (capacity + CHUNK - 1) / CHUNK;
     const std::uint64_t slots = std::min<std::uint64_t>(light_slots(scene).size(), SHADOW_SAMPLES);
+    const std::uint64_t pipelines = camera_samples(scene) > capacity ? static_cast<std::uint64_t>(most_pipelines) : 1;
 
     MemoryPlan plan;
     plan.queue_capacity = static_cast<uint>(capacity);
     plan.queues = static_cast<int>(depth) + 1;
+    plan.pipelines = static_cast<int>(pipelines);
     plan.geometry = bvh.nodes.size() * sizeof(BvhNode) + bvh.triangle_blocks.size() * sizeof(TriangleBlock) +
                     bvh.sphere_blocks.size() * sizeof(SphereBlock) + scene.vertices.size() * sizeof(Vertex) +
                     scene.triangles.size() * sizeof(Triangle) + scene.spheres.size() * sizeof(Sphere) +
                     scene.planes.size() * sizeof(Plane) + scene.materials.size() * sizeof(Material) +
                     scene.lights.size() * sizeof(LightRecord);
     for (const TextureImage& image : scene.images) plan.textures += image.texels.size() * 3 * sizeof(float);
-    plan.ray_queues = capacity * (1 + 2 * depth) * sizeof(Ray);
-    plan.hits = capacity * sizeof(Hit);
-    plan.shadow_queue = chunks * slots * (CHUNK * sizeof(ShadowRay) + sizeof(uint));
+    plan.ray_queues = pipelines * capacity * (1 + 2 * depth) * sizeof(Ray);
+    plan.hits = pipelines * capacity * sizeof(Hit);
+    plan.shadow_queue = pipelines * chunks * slots * (CHUNK * sizeof(ShadowRay) + sizeof(uint));
     plan.film = film_pixels(scene) * FILM_CHANNELS * (planes.count() * sizeof(cl_long) + sizeof(float));
     return plan;
 }
@@ -37,7 +47,7 @@ MemoryPlan plan_with(const Scene& scene, const Bvh& bvh, const FilmPlanes& plane
 /// The largest single buffer of the plan that grows with the capacity.
 std::uint64_t largest_queue(const MemoryPlan& plan) {
     const std::uint64_t child_queue = 2 * std::uint64_t{plan.queue_capacity} * sizeof(Ray);
-    return std::max(child_queue, plan.shadow_queue);
+    return std::max(child_queue, plan.shadow_queue / static_cast<std::uint64_t>(plan.pipelines));
 }
 
 }  // namespace
@@ -48,11 +58,10 @@ MemoryPlan plan_memory(const Scene& scene, const Bvh& bvh, const FilmPlanes& pla
     const auto fits = [&](const MemoryPlan& plan) {
         return plan.total() <= limit && std::max(largest_queue(plan), plan.film) <= device.largest_buffer;
     };
-    MemoryPlan plan =
-        plan_with(scene, bvh, planes, request.queue_capacity > 0 ? request.queue_capacity : default_capacity);
-    if (request.queue_capacity == 0)
-        for (std::uint64_t c = default_capacity; !fits(plan) && c > smallest_default; c /= 2)
-            plan = plan_with(scene, bvh, planes, c / 2);
+    std::uint64_t capacity = request.queue_capacity > 0 ? request.queue_capacity : default_capacity(device);
+    MemoryPlan plan = plan_with(scene, bvh, planes, capacity, request.pipelines);
+    while (request.queue_capacity == 0 && !fits(plan) && capacity > smallest_default)
+        plan = plan_with(scene, bvh, planes, capacity /= 2, request.pipelines);
     if (!fits(plan))
         throw DeviceError(fmt::format(
             "the frame needs {} (scene {}, film {}, queues of {} rays {}), more than the {} of {}: lower {}",
@@ -65,7 +74,8 @@ MemoryPlan plan_memory(const Scene& scene, const Bvh& bvh, const FilmPlanes& pla
 
 std::uint64_t MemoryPlan::wave_bytes() const {
     const std::uint64_t rays_and_children = queues > 1 ? 3 : 1;  // a ray has two children at most
-    return queue_capacity * rays_and_children * sizeof(Ray) + hits + shadow_queue;
+    return queue_capacity * rays_and_children * sizeof(Ray) +
+           (hits + shadow_queue) / static_cast<std::uint64_t>(pipelines);
 }
 
 std::string human_bytes(std::uint64_t bytes) {

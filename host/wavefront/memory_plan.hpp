@@ -15,9 +15,10 @@ namespace raymill {
 struct MemoryPlan {
     uint queue_capacity = 0;  // rays of a batch
     int queues = 0;           // depths that have a queue
+    int pipelines = 1;        // sets of queues: see Pipeline
     std::uint64_t geometry = 0;
     std::uint64_t textures = 0;
-    std::uint64_t ray_queues = 0;  // capacity * (1 + 2 * depth) rays
+    std::uint64_t ray_queues = 0;  // pipelines * capacity * (1 + 2 * depth) rays
     std::uint64_t hits = 0;
     std::uint64_t shadow_queue = 0;
     std::uint64_t film = 0;  // integer sums and resolved pixels
@@ -28,8 +29,9 @@ struct MemoryPlan {
 };
 
 struct MemoryRequest {
-    std::uint64_t queue_capacity = 0;  // rays; 0: as many as are useful and fit
+    std::uint64_t queue_capacity = 0;  // rays; 0: as many as suit the device's compute units, or fit
     std::uint64_t limit = 0;           // bytes; 0: what the device has
+    int pipelines = 2;                 // of a frame with camera rays for more than one wave
 };
 
 /// The plan for a frame of this scene. Throws DeviceError if it does not fit, with what to change.

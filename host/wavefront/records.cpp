@@ -222,6 +222,10 @@ std::uint64_t film_pixels(const Scene& scene) {
     return static_cast<std::uint64_t>(window.width) * static_cast<std::uint64_t>(window.height);
 }
 
+std::uint64_t camera_samples(const Scene& scene) {
+    return film_pixels(scene) * static_cast<std::uint64_t>(scene.settings.spp);
+}
+
 bool spawns_secondary_rays(const Scene& scene) {
     return std::ranges::any_of(scene.materials,
                                [](const SceneMaterial& m) { return m.reflection > 0 || m.transmission > 0; });

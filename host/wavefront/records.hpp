@@ -25,6 +25,9 @@ SceneConstants scene_constants(const Scene& scene, std::size_t node_count, const
 /// Pixels of the rendered window.
 std::uint64_t film_pixels(const Scene& scene);
 
+/// Camera rays of a frame.
+std::uint64_t camera_samples(const Scene& scene);
+
 /// Whether any material reflects or transmits: else no secondary rays exist.
 bool spawns_secondary_rays(const Scene& scene);
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <numeric>
+#include <utility>
 
 #include "common/child_process.hpp"
 #include "common/hash.hpp"
@@ -40,9 +41,19 @@ Counters sum(const std::vector<Counters>& passes) {
     return sum;
 }
 
-std::uint64_t camera_samples(const Scene& scene) {
-    return film_pixels(scene) * static_cast<std::uint64_t>(scene.settings.spp);
-}
+/// An exception must not leave waves on their way, into what the next frame begins with.
+class IdleAtTheEnd {
+  public:
+    explicit IdleAtTheEnd(const std::vector<Pipeline>& pipelines) : pipelines_(pipelines) {}
+    IdleAtTheEnd(const IdleAtTheEnd&) = delete;
+    IdleAtTheEnd& operator=(const IdleAtTheEnd&) = delete;
+    ~IdleAtTheEnd() {
+        for (const Pipeline& pipeline : pipelines_) clFinish(pipeline.device.queue());
+    }
+
+  private:
+    const std::vector<Pipeline>& pipelines_;
+};
 
 }  // namespace
 
@@ -70,11 +81,11 @@ std::uint64_t Frame::hash() const {
 }
 
 std::uint64_t Renderer::hash_film() const try {
-    const std::size_t count = film_.sums.size(), bytes = count * sizeof(cl_long);
+    const std::size_t count = sums_.size(), bytes = count * sizeof(cl_long);
     const auto* sums = static_cast<const cl_long*>(
-        device_.queue.enqueueMapBuffer(film_.sums.memory(), CL_TRUE, CL_MAP_READ, 0, bytes));
+        device_.queue.enqueueMapBuffer(sums_.memory(), CL_TRUE, CL_MAP_READ, 0, bytes));
     const std::uint64_t hash = hash_of({sums, count});
-    device_.queue.enqueueUnmapMemObject(film_.sums.memory(), const_cast<cl_long*>(sums));
+    device_.queue.enqueueUnmapMemObject(sums_.memory(), const_cast<cl_long*>(sums));
     device_.queue.finish();
     return hash;
 } catch (const cl::Error& error) {
@@ -92,20 +103,19 @@ Renderer::Renderer(const Device& device, const Scene& scene, const Bvh& bvh, con
                             [&] { return Stages(device, options.work_group, options.kernel_dir, options.traversal); })),
       device_scene_(timeline_.measure("upload scene", [&] { return DeviceScene(device, scene, bvh, planes_); })),
       max_depth_(plan_.queues - 1),
-      waves_(plan_.queue_capacity, max_depth_),
       slot_ranges_(make_slot_ranges(static_cast<uint>(device_scene_.light_slots.size()))) {
-    timeline_.measure("allocate queues", [&] { allocate_queues(); });
+    timeline_.measure("allocate queues", [&] { allocate(); });
     timeline_.measure("compile kernels", [&] { compile_kernels(options); });
 }
 
-void Renderer::allocate_queues() try {
-    for (int depth = 0; depth <= max_depth_; ++depth) queues_.emplace_back(device_, waves_.queue_size(depth));
-    const std::size_t segments = std::size_t{Stages::chunks(plan_.queue_capacity)} * slot_ranges_.front().count;
-    hits_ = Buffer<Hit>(device_, plan_.queue_capacity);
-    shadow_queue_ = {{device_, segments * CHUNK}, {device_, segments}};
-    film_ = {{device_, film_pixels(scene_) * FILM_CHANNELS * planes_.count()}, {device_, slot_ranges_.size()}};
+void Renderer::allocate() try {
+    sums_ = Buffer<cl_long>(device_, film_pixels(scene_) * FILM_CHANNELS * planes_.count());
+    for (int i = 0; i < plan_.pipelines; ++i) {
+        Device device = device_;
+        if (i > 0) device.queue = cl::CommandQueue(device.context, device.device);
+        pipelines_.emplace_back(std::move(device), plan_, slot_ranges_.front().count, slot_ranges_.size(), sums_);
+    }
     make_ready();
-    device_.queue.finish();
 } catch (const cl::Error& error) {
     throw DeviceError(error);
 }
@@ -135,19 +145,20 @@ void Renderer::compile_kernels(const RenderOptions& options) try {
 }
 
 void Renderer::compile(profile::Stage stage) {
-    const QueueRange<Ray> no_rays{queues_[0]};
+    Pipeline& p = pipelines_.front();
+    const Batch nothing;
     switch (stage) {
         case profile::Stage::generate:
-            return stages_.generate(device_scene_, 0, 0, queues_[0]);
+            return stages_.generate(device_scene_, 0, 0, p.queues[0]);
         case profile::Stage::intersect:
-            return stages_.intersect(device_scene_, no_rays, hits_, film_);
+            return stages_.intersect(device_scene_, p.rays(nothing), p.hits, p.film);
         case profile::Stage::shade:
-            return stages_.shade(device_scene_, no_rays, hits_, {}, shadow_queue_, film_);
+            return stages_.shade(device_scene_, p.rays(nothing), p.hits, {}, p.shadow_queue, p.film);
         case profile::Stage::shadow:
-            return stages_.shadow(device_scene_, shadow_queue_, 0, film_);
+            return stages_.shadow(device_scene_, p.shadow_queue, 0, p.film);
         case profile::Stage::secondary:
-            if (max_depth_ > 0) stages_.secondary(device_scene_, no_rays, hits_, {queues_[1]}, film_);
-            return;
+            if (max_depth_ == 0) return;
+            return stages_.secondary(device_scene_, p.rays(nothing), p.hits, {p.children(nothing)}, p.film);
         default:
             return;  // not of compiled_stages
     }
@@ -158,11 +169,11 @@ Frame Renderer::render(const Progress& progress, profile::Detail detail) try {
     start(detail);
     trace_all(progress);
     Frame frame = read_frame();
-    if (profiler_) frame.profile = profiler_->finish(waves_);
+    if (profiler_) frame.profile = profiler_->finish(pipelines_.front().waves);
     stages_.observe({});
     profiler_.reset();
     frame.seconds = 1e-9 * static_cast<double>(profile::now() - began);
-    if (keep_sums_) frame.sums = film_.sums.read(device_);
+    if (keep_sums_) frame.sums = sums_.read(device_);
     return frame;
 } catch (const cl::Error& error) {
     throw DeviceError(error);
@@ -172,38 +183,53 @@ void Renderer::start(profile::Detail detail) {
     stages_.observe({});
     profiler_.reset();
     if (detail != profile::Detail::none) {
-        const Profiler::FrameShape shape{plan_.queue_capacity, shadow_queue_.rays.size(), slot_ranges_.size(),
-                                         max_depth_};
+        const Profiler::FrameShape shape{plan_.queue_capacity, pipelines_.front().shadow_queue.rays.size(),
+                                         slot_ranges_.size(), max_depth_};
         profiler_.emplace(device_, shape, detail);
         stages_.observe([this](const LaunchSize& size, const cl::Event& e) { profiler_->launched(size, e); });
     }
     make_ready();
     ready_ = false;
-    film_.counted = profiler_.has_value();
     counts_ = {};
-    waves_.start();
+    for (Pipeline& pipeline : pipelines_) {
+        pipeline.film.counted = profiler_.has_value();
+        pipeline.waves.start();
+        pipeline.running.reset();
+    }
 }
 
+/// The pipelines by turns. What is shown or timed goes through one of them, wave by wave.
 void Renderer::trace_all(const Progress& progress) {
+    const IdleAtTheEnd idle_at_the_end(pipelines_);
     const std::uint64_t samples = camera_samples(scene_);
+    const std::size_t pipelines = observer_ || profiler_ ? 1 : pipelines_.size();
     bool going_on = true;
-    for (;;) {
-        const std::uint64_t to_come = going_on ? samples - counts_.camera : 0;
-        std::optional<Batch> batch = waves_.next(to_come);
-        if (!batch) {
-            if (to_come == 0) break;
-            const uint count = waves_.camera_batch(to_come);
-            stages_.generate(device_scene_, counts_.camera, count, queues_[0]);
-            counts_.camera += count;
-            waves_.push(0, count);
-            batch = waves_.next(to_come - count);
-            show("generate", *batch);
-        }
-        trace(*batch);
-        if (progress)
+    for (std::size_t turn = 0, idle = 0; idle < pipelines; turn = (turn + 1) % pipelines) {
+        Pipeline& pipeline = pipelines_[turn];
+        finish_wave(pipeline);
+        idle = begin_wave(pipeline, going_on ? samples - counts_.camera : 0) ? 0 : idle + 1;
+        if (progress && idle == 0)
             going_on = progress(static_cast<double>(counts_.camera) / static_cast<double>(samples)) && going_on;
     }
-    waves_.check_drained();
+    for (const Pipeline& pipeline : pipelines_) pipeline.waves.check_drained();
+}
+
+/// Launches a pipeline's next wave, if there is one. to_come: camera samples that no pipeline has begun.
+bool Renderer::begin_wave(Pipeline& pipeline, std::uint64_t to_come) {
+    stages_.launch_on(pipeline.device.queue);
+    std::optional<Batch> batch = pipeline.waves.next(to_come);
+    if (!batch) {
+        if (to_come == 0) return false;
+        const uint count = pipeline.waves.camera_batch(to_come);
+        stages_.generate(device_scene_, counts_.camera, count, pipeline.queues[0]);
+        counts_.camera += count;
+        pipeline.waves.push(0, count);
+        batch = pipeline.waves.next(to_come - count);
+        show("generate", pipeline, *batch);
+    }
+    trace(pipeline, *batch);
+    pipeline.running = batch;
+    return true;
 }
 
 Frame Renderer::read_frame() {
@@ -212,7 +238,10 @@ Frame Renderer::read_frame() {
     frame.rgba = resolve();
     frame.samples_per_pixel = scene_.settings.spp;
     frame.planes = planes_;
-    const Counters counters = sum(film_.counters.read(device_));
+    std::vector<Counters> of_passes;
+    for (const Pipeline& pipeline : pipelines_)
+        for (const Counters& counters : pipeline.film.counters.read(device_)) of_passes.push_back(counters);
+    const Counters counters = sum(of_passes);
     if (counters.shadow_rays != counters.shadow_traced)
         throw QueueMismatch(
             fmt::format("{} shadow rays were pushed and {} popped", counters.shadow_rays, counters.shadow_traced));
@@ -221,7 +250,8 @@ Frame Renderer::read_frame() {
     frame.shadow_blocked = counters.shadow_blocked;
     frame.saturated = counters.saturated;
     frame.not_a_number = counters.not_a_number;
-    for (int depth = 0; depth <= max_depth_; ++depth) frame.waves += waves_.counts(depth).batches;
+    for (const Pipeline& pipeline : pipelines_)
+        for (int depth = 0; depth <= max_depth_; ++depth) frame.waves += pipeline.waves.counts(depth).batches;
     frame.finished = samples > 0 ? static_cast<double>(counts_.camera) / static_cast<double>(samples) : 1;
     return frame;
 }
@@ -230,66 +260,73 @@ Frame Renderer::read_frame() {
 /// begins.
 void Renderer::make_ready() {
     if (ready_) return;
-    film_.sums.clear(device_);
-    film_.counters.clear(device_);
+    sums_.clear(device_);
+    for (Pipeline& pipeline : pipelines_) pipeline.film.counters.clear(device_);
     rgba_.assign(film_pixels(scene_) * FILM_CHANNELS, 0.0f);
+    device_.queue.finish();
     ready_ = true;
 }
 
 std::vector<float> Renderer::resolve() {
     Buffer<float> pixels = Buffer<float>::over(device_, rgba_);
-    stages_.resolve(film_, static_cast<uint>(scene_.settings.spp), pixels);
+    stages_.launch_on(device_.queue);
+    stages_.resolve(pipelines_.front().film, static_cast<uint>(scene_.settings.spp), pixels);
     pixels.read_back(device_);
     return std::move(rgba_);
 }
 
-void Renderer::trace(const Batch& batch) {
-    const QueueRange<Ray> rays{queues_[static_cast<std::size_t>(batch.depth)], batch.first, batch.count};
+void Renderer::trace(Pipeline& p, const Batch& batch) {
+    const QueueRange<Ray> rays = p.rays(batch);
     const int spp = scene_.settings.spp;
-    film_.pixels_once = pixels_once(batch.depth, spp);
-    stages_.intersect(device_scene_, rays, hits_, film_);
-    show("intersect", batch);
+    p.film.pixels_once = pixels_once(batch.depth, spp);
+    stages_.intersect(device_scene_, rays, p.hits, p.film);
+    show("intersect", p, batch);
     for (std::size_t pass = 0; pass < slot_ranges_.size(); ++pass) {
         const SlotRange& slots = slot_ranges_[pass];
-        film_.pass = profiler_ ? static_cast<uint>(pass) : 0;
-        film_.pixels_once = pixels_once(batch.depth, spp);
-        stages_.shade(device_scene_, rays, hits_, slots, shadow_queue_, film_);
-        show("shade", batch, slots);
-        film_.pixels_once = pixels_once(batch.depth, spp, slots.count);
-        stages_.shadow(device_scene_, shadow_queue_, Stages::chunks(batch.count) * slots.count, film_);
-        show("shadow", batch, slots);
+        p.film.pass = profiler_ ? static_cast<uint>(pass) : 0;
+        p.film.pixels_once = pixels_once(batch.depth, spp);
+        stages_.shade(device_scene_, rays, p.hits, slots, p.shadow_queue, p.film);
+        show("shade", p, batch, slots);
+        p.film.pixels_once = pixels_once(batch.depth, spp, slots.count);
+        stages_.shadow(device_scene_, p.shadow_queue, Stages::chunks(batch.count) * slots.count, p.film);
+        show("shadow", p, batch, slots);
     }
-    if (planes_.any_feature()) stages_.features(device_scene_, rays, static_cast<uint>(batch.depth), hits_, film_);
+    if (planes_.any_feature()) stages_.features(device_scene_, rays, static_cast<uint>(batch.depth), p.hits, p.film);
+    if (batch.depth < max_depth_)
+        stages_.secondary(device_scene_, rays, p.hits, {p.children(batch), p.waves.waiting(batch.depth + 1)}, p.film);
+    p.device.queue.flush();
+}
+
+/// Waits for a pipeline's wave, if it has one, and takes its children.
+void Renderer::finish_wave(Pipeline& pipeline) {
+    if (!pipeline.running) return;
+    const Batch batch = *std::exchange(pipeline.running, {});
     const bool goes_deeper = batch.depth < max_depth_;
-    if (goes_deeper) {
-        Buffer<Ray>& children = queues_[static_cast<std::size_t>(batch.depth) + 1];
-        stages_.secondary(device_scene_, rays, hits_, {children, waves_.waiting(batch.depth + 1)}, film_);
-    }
     if (!goes_deeper && !profiler_) {
-        device_.queue.finish();
+        pipeline.device.queue.finish();
         return;
     }
     if (profiler_) profiler_->settle();
-    const std::vector<Counters> counters = film_.counters.read(device_, 0, profiler_ ? film_.counters.size() : 1);
-    if (goes_deeper) take_children(batch, counters.front().children);
+    const Film& film = pipeline.film;
+    const std::vector<Counters> counters =
+        film.counters.read(pipeline.device, 0, profiler_ ? film.counters.size() : 1);
+    if (goes_deeper) {
+        const uint first = pipeline.waves.waiting(batch.depth + 1);
+        const std::uint64_t children = counters.front().children;
+        pipeline.waves.push(batch.depth + 1, children);
+        counts_.secondary += children;
+        const QueueRange<Ray> pushed{pipeline.children(batch), first, static_cast<uint>(children)};
+        show("secondary", pipeline, batch, {}, pushed);
+    }
     if (profiler_) profiler_->end_wave(batch, counters);
 }
 
-void Renderer::take_children(const Batch& batch, std::uint64_t children) {
-    const uint first = waves_.waiting(batch.depth + 1);
-    waves_.push(batch.depth + 1, children);
-    counts_.secondary += children;
-    const Buffer<Ray>& queue = queues_[static_cast<std::size_t>(batch.depth) + 1];
-    show("secondary", batch, {}, QueueRange<Ray>{queue, first, static_cast<uint>(children)});
-}
-
-void Renderer::show(const char* stage, const Batch& batch, SlotRange slots,
+void Renderer::show(const char* stage, const Pipeline& p, const Batch& batch, SlotRange slots,
                     std::optional<QueueRange<Ray>> children) const {
     if (!observer_) return;
-    device_.queue.finish();
-    const QueueRange<Ray> rays{queues_[static_cast<std::size_t>(batch.depth)], batch.first, batch.count};
+    p.device.queue.finish();
     const std::uint64_t first_sample = counts_.camera - std::min<std::uint64_t>(counts_.camera, batch.count);
-    observer_(stage, {batch, rays, hits_, slots, shadow_queue_, children, film_, first_sample});
+    observer_(stage, {batch, p.rays(batch), p.hits, slots, p.shadow_queue, children, p.film, first_sample});
 }
 
 }  // namespace raymill

@@ -11,10 +11,8 @@
 #include <vector>
 
 #include "profile/timeline.hpp"
-#include "wavefront/memory_plan.hpp"
+#include "wavefront/pipeline.hpp"
 #include "wavefront/profiler.hpp"
-#include "wavefront/stages.hpp"
-#include "wavefront/waves.hpp"
 
 namespace raymill {
 
@@ -79,6 +77,7 @@ struct WaveView {
 };
 
 /// Called after each of "generate", "intersect", "shade", "shadow" and "secondary" has run, when the device is idle.
+/// There is one pipeline then.
 using WaveObserver = std::function<void(const char* stage, const WaveView& view)>;
 
 /// Called between waves with the share of camera samples done; returns false to stop: rays already generated are
@@ -107,17 +106,18 @@ class Renderer {
     Frame render(const Progress& progress = {}, profile::Detail detail = profile::Detail::none);
 
   private:
-    void allocate_queues();
+    void allocate();
     void compile_kernels(const RenderOptions& options);
     void compile(profile::Stage stage);
     void make_ready();
     void start(profile::Detail detail);
     void trace_all(const Progress& progress);
+    bool begin_wave(Pipeline& pipeline, std::uint64_t to_come);
+    void finish_wave(Pipeline& pipeline);
+    void trace(Pipeline& pipeline, const Batch& batch);
     Frame read_frame();
     std::vector<float> resolve();
-    void trace(const Batch& batch);
-    void take_children(const Batch& batch, std::uint64_t children);
-    void show(const char* stage, const Batch& batch, SlotRange slots = {},
+    void show(const char* stage, const Pipeline& pipeline, const Batch& batch, SlotRange slots = {},
               std::optional<QueueRange<Ray>> children = {}) const;
 
     const Device& device_;
@@ -129,14 +129,11 @@ class Renderer {
     Stages stages_;
     DeviceScene device_scene_;
     int max_depth_;
-    Waves waves_;
-    std::vector<Buffer<Ray>> queues_;
-    Buffer<Hit> hits_;
-    ShadowQueue shadow_queue_;
-    Film film_;
-    std::vector<float> rgba_;  // the picture to come
-    bool ready_ = false;       // film_ and rgba_ are cleared
     std::vector<SlotRange> slot_ranges_;
+    Buffer<cl_long> sums_;  // of the film
+    std::vector<Pipeline> pipelines_;
+    std::vector<float> rgba_;  // the picture to come
+    bool ready_ = false;       // the film and rgba_ are cleared
     RayCounts counts_;
     WaveObserver observer_;
     std::optional<Profiler> profiler_;

@@ -61,7 +61,8 @@ Stages::Stages(const Device& device, std::size_t work_group, const std::string& 
     : device_(device),
       work_group_(work_group),
       kernel_dir_(kernel_dir),
-      packets_(traversal == Traversal::packet || (traversal == Traversal::automatic && device.info.type == "CPU")) {
+      packets_(traversal == Traversal::packet || (traversal == Traversal::automatic && device.info.type == "CPU")),
+      queue_(device.queue) {
     if (work_group > device.info.largest_work_group)
         throw DeviceError(fmt::format("device {} has work-groups of at most {} items, not {}: lower --work-group",
                                       device.info.name, device.info.largest_work_group, work_group));
@@ -105,8 +106,8 @@ void Stages::launch(Stage& stage, const Work& work, const Arguments&... argument
         (stage.kernel.setArg(index++, argument(arguments)), ...);
         const std::size_t groups = (std::max(work.work_items, 1u) + stage.local_size - 1) / stage.local_size;
         cl::Event event;
-        device_.queue.enqueueNDRangeKernel(stage.kernel, cl::NullRange, cl::NDRange(groups * stage.local_size),
-                                           cl::NDRange(stage.local_size), nullptr, observer_ ? &event : nullptr);
+        queue_.enqueueNDRangeKernel(stage.kernel, cl::NullRange, cl::NDRange(groups * stage.local_size),
+                                    cl::NDRange(stage.local_size), nullptr, observer_ ? &event : nullptr);
         if (observer_) {
             const std::uint64_t places = std::uint64_t{groups} * stage.local_size * stage.items;
             observer_({stage.name, work.items, work.work_items, groups, places, work.segments}, event);

@@ -86,6 +86,9 @@ class Stages {
 
     void observe(LaunchObserver observer) { observer_ = std::move(observer); }
 
+    /// Launches go to this queue of the device from now on; at first, to the device's own.
+    void launch_on(const cl::CommandQueue& queue) { queue_ = queue; }
+
     /// While on, a launch of no items runs one work-item, which finds nothing to do: runtimes compile a kernel when it
     /// is launched for the first time.
     void run_empty_launches(bool on) { runs_empty_launches_ = on; }
@@ -129,6 +132,7 @@ class Stages {
     std::size_t work_group_;
     std::string kernel_dir_;
     bool packets_;
+    cl::CommandQueue queue_;
     LaunchObserver observer_;
     bool runs_empty_launches_ = false;
     Stage generate_, intersect_, shade_, shadow_, secondary_, resolve_;

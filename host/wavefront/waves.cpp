@@ -54,6 +54,7 @@ uint Waves::camera_batch(std::uint64_t camera_rays) const {
 }
 
 void Waves::start() {
+    std::ranges::fill(fill_, 0u);
     std::ranges::fill(counts_, QueueCounts{});
 }
 

@@ -66,7 +66,7 @@ class Waves {
     int max_depth() const { return static_cast<int>(fill_.size()) - 1; }
     /// Since construction or the last start().
     const QueueCounts& counts(int depth) const { return counts_.at(static_cast<std::size_t>(depth)); }
-    /// Forgets the counts.
+    /// Forgets the counts, and what waits in the queues.
     void start();
     /// Throws QueueMismatch unless every ray that was pushed has been popped.
     void check_drained() const;

@@ -82,6 +82,7 @@ void measure_scene(const Arguments& a, const Device& device, const std::string& 
     for (const std::uint64_t capacity : a.capacities) {
         RenderOptions options;
         options.memory.queue_capacity = capacity;
+        options.memory.pipelines = 1;  // as what is profiled has
         Renderer renderer(device, scene, bvh, options);
         measure(a, std::filesystem::path(file).stem().string(), renderer);
     }

@@ -1,6 +1,9 @@
 // One scene, one film: its integers do not depend on how the work is cut up.
 #include <gtest/gtest.h>
 
+#include <stdexcept>
+#include <string>
+
 #include "rendering.hpp"
 
 namespace raymill {
@@ -191,6 +194,40 @@ TEST_F(OneFilm, comes_of_one_thread_and_of_two) {
     if (threads < 2) GTEST_SKIP() << "the device has a single compute unit";
     expect_same(options_with(997), open_device("", 1));
     if (threads > 2) expect_same(options_with(997), open_device("", 2));
+}
+
+// What is shown or timed goes through one pipeline.
+TEST_F(OneFilm, comes_of_waves_of_two_pipelines_and_of_one) {
+    for (const int spp : {1, 4}) {
+        Scene scene = OneFilm::scene();
+        scene.settings.spp = spp;
+        const Bvh bvh = bvh_of(scene);
+        Renderer renderer(test_device(), scene, bvh, options_with(256));
+        ASSERT_EQ(renderer.memory().pipelines, 2);
+        const Frame both = renderer.render();
+        const Frame timed = renderer.render({}, profile::Detail::totals);
+        std::uint64_t waves_shown = 0;
+        renderer.observe([&](const std::string& stage, const WaveView&) { waves_shown += stage == "intersect"; });
+        const Frame shown = renderer.render();
+        EXPECT_EQ(shown.waves, waves_shown);
+        EXPECT_EQ(timed.waves, shown.waves);
+        for (const Frame& one : {timed, shown}) {
+            EXPECT_EQ(one.hash(), both.hash()) << differing_pixels(one, both) << " pixels differ";
+            EXPECT_EQ(one.rays.secondary, both.rays.secondary);
+            EXPECT_EQ(one.rays.shadow, both.rays.shadow);
+            EXPECT_EQ(one.shadow_blocked, both.shadow_blocked);
+        }
+    }
+}
+
+TEST_F(OneFilm, comes_of_a_renderer_that_was_broken_off) {
+    const Bvh bvh = bvh_of(scene());
+    Renderer renderer(test_device(), scene(), bvh, options_with(256));
+    int waves = 0;
+    const auto break_off = [&](double) -> bool { return ++waves < 5 ? true : throw std::runtime_error("no more"); };
+    EXPECT_THROW(renderer.render(break_off), std::runtime_error);
+    EXPECT_EQ(waves, 5);
+    EXPECT_EQ(renderer.render().hash(), expected().hash());
 }
 
 TEST_F(OneFilm, comes_again_of_the_same_renderer) {

@@ -84,11 +84,40 @@ TEST(the_memory_plan, is_what_a_frame_with_aovs_allocates) {
 }
 
 TEST(the_memory_plan, has_two_queues_of_children_a_depth) {
-    const MemoryPlan plan = plan_of(glass_scene(6), {5000, 0});
-    EXPECT_EQ(plan.queue_capacity, 5000u);
+    const MemoryPlan plan = plan_of(glass_scene(6), {8000, 0});
+    EXPECT_EQ(plan.queue_capacity, 8000u);
     EXPECT_EQ(plan.queues, 7);
-    EXPECT_EQ(plan.ray_queues, 5000u * (1 + 2 * 6) * sizeof(Ray));
+    EXPECT_EQ(plan.ray_queues, 8000u * (1 + 2 * 6) * sizeof(Ray));
     EXPECT_EQ(plan.film, 100u * 80u * 4u * (8u + 4u));
+}
+
+TEST(the_memory_plan, has_two_pipelines_where_one_wave_does_not_hold_all_camera_rays) {
+    const MemoryPlan one = plan_of(glass_scene(6), {8000, 0}), two = plan_of(glass_scene(6), {7999, 0});
+    EXPECT_EQ(one.pipelines, 1);
+    EXPECT_EQ(two.pipelines, 2);
+    EXPECT_EQ(two.ray_queues, 2u * 7999u * (1 + 2 * 6) * sizeof(Ray));
+    EXPECT_EQ(two.hits, 2u * 7999u * sizeof(Hit));
+    EXPECT_EQ(two.shadow_queue, 2 * one.shadow_queue);  // of as many chunks
+    EXPECT_EQ(two.film, one.film);
+    EXPECT_EQ(plan_of(glass_scene(6), {7999, 0, 1}).pipelines, 1);
+    EXPECT_EQ(one.wave_bytes() - two.wave_bytes(), 3 * sizeof(Ray) + sizeof(Hit));
+}
+
+TEST(the_memory_plan, has_waves_that_grow_with_the_compute_units) {
+    const Scene scene = glass_scene(0);
+    const Bvh bvh = bvh_of(scene);
+    const auto capacity = [&](unsigned compute_units) {
+        DeviceInfo device = test_device().info;
+        device.compute_units = compute_units;
+        device.global_memory = device.largest_buffer = 1ull << 40;
+        return plan_memory(scene, bvh, {}, {}, device).queue_capacity;
+    };
+    EXPECT_EQ(capacity(0), 8192u);
+    EXPECT_EQ(capacity(1), 8192u);
+    EXPECT_EQ(capacity(2), 16384u);
+    EXPECT_EQ(capacity(3), 16384u);
+    EXPECT_EQ(capacity(64), 524288u);
+    EXPECT_EQ(capacity(100000), 1048576u);
 }
 
 TEST(the_memory_plan, needs_no_queues_for_children_that_no_material_spawns) {
