@@ -48,7 +48,7 @@ enum {
 };
 
 // Argument `film_flags` of the kernels that write the film.
-#define FILM_PIXELS_ONCE 1u  // no two items of the launch have the same pixel, so that plain adds do
+#define FILM_PIXELS_ONCE 1u  // no two items that run have the same pixel, so that plain adds do
 #define FILM_COUNTED 2u      // the frame is profiled: see Counters
 #define FILM_PASS_SHIFT 2u   // from here on: which of the buffer's Counters the launch adds to
 

@@ -64,6 +64,7 @@ int explain(const ExplainArguments& arguments) {
     }
     print_warnings(scene.warnings);
     verify::crop_to_pixel(scene.settings, x, y);
+    options.memory.pipelines = 1;  // no more are used
     // One pixel needs no more than this; the queues of a whole frame would only take time to set up.
     if (options.memory.queue_capacity == 0)
         options.memory.queue_capacity = static_cast<std::uint64_t>(std::clamp<int>(scene.settings.spp, CHUNK, 1 << 16));

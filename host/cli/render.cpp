@@ -148,6 +148,8 @@ int render(RenderArguments arguments) {
     RenderOptions options = arguments.device.options();
     options.planes = aov_planes(aovs);
     options.keep_sums = !aovs.empty();
+    // What is timed or captured goes wave by wave.
+    if (detail_of(arguments) != profile::Detail::none || !arguments.captures.empty()) options.memory.pipelines = 1;
     if (image_format(arguments.output) == ImageFormat::png && (arguments.half || !aovs.empty()))
         throw UsageError(fmt::format("{}: a PNG has 8 bits a channel and no layers; give an output that ends in .exr",
                                      arguments.half ? "--half" : "--aov"));
@@ -193,7 +195,8 @@ Command add_render_command(CLI::App& app) {
         ->type_name("LIST");
     command.add_flag("--half", arguments->half, "16-bit floats in the EXR file instead of 32-bit ones");
     arguments->device.add_to(command);
-    command.add_flag("--stats", arguments->stats, "Print what each stage did and where the time went");
+    command.add_flag("--stats", arguments->stats,
+                     "Print what each stage did and where the time went, of a frame that goes wave by wave");
     command.add_option("--stats-json", arguments->stats_file, "The same for programs, with every launch")
         ->type_name("FILE");
     command.add_option("--trace", arguments->trace_file, "Timeline of the run for Perfetto and chrome://tracing")

@@ -11,8 +11,8 @@ namespace {
 // An interrupt may end a frame, and also make a device fail: when a signal comes, LLVM removes the files that it is
 // about to write, and the kernels do not build. Neither says anything of the setting.
 
-/// The first wave of each pipeline alone: they compile or load every kernel and touch the memory of every queue that they
-/// reach.
+/// The first wave of each pipeline alone: they compile or load every kernel and touch the memory of every queue that
+/// they reach.
 void warm_up(Renderer& renderer) {
     int waves = renderer.memory().pipelines;
     renderer.render([&](double) { return --waves > 0; });

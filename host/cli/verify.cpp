@@ -68,6 +68,7 @@ int verify_scene(const VerifyArguments& arguments) {
     if (arguments.scene.file.empty()) throw UsageError("SCENE is required, or --capture; see raymill verify --help");
     RenderOptions options = arguments.device.options();
     options.planes = verify::ledger_planes();
+    options.memory.pipelines = 1;  // no more are used
     Scene scene = arguments.scene.load();
     if (arguments.scene.size.empty()) shrink(scene.settings);
     print_warnings(scene.warnings);

@@ -11,8 +11,10 @@ namespace raymill {
 
 namespace {
 
-constexpr std::uint64_t rays_a_compute_unit = 1u << 13;  // of a wave: what they take stays in the nearer caches
-constexpr std::uint64_t smallest_default = CHUNK, largest_default = 1u << 20;
+// Of a wave by default. On processors what 8k rays take stays in a compute unit's nearer caches; of larger waves than
+// 64k nothing was ever much faster, and deep recursion has many queues.
+constexpr std::uint64_t rays_a_compute_unit = 1u << 13, largest_default = 1u << 16;
+constexpr std::uint64_t smallest_default = CHUNK;
 
 /// A power of two, so that halves of it are whole chunks.
 std::uint64_t default_capacity(const DeviceInfo& device) {
@@ -62,6 +64,7 @@ MemoryPlan plan_memory(const Scene& scene, const Bvh& bvh, const FilmPlanes& pla
     MemoryPlan plan = plan_with(scene, bvh, planes, capacity, request.pipelines);
     while (request.queue_capacity == 0 && !fits(plan) && capacity > smallest_default)
         plan = plan_with(scene, bvh, planes, capacity /= 2, request.pipelines);
+    if (!fits(plan)) plan = plan_with(scene, bvh, planes, capacity, 1);
     if (!fits(plan))
         throw DeviceError(fmt::format(
             "the frame needs {} (scene {}, film {}, queues of {} rays {}), more than the {} of {}: lower {}",

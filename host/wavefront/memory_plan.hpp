@@ -24,14 +24,15 @@ struct MemoryPlan {
     std::uint64_t film = 0;  // integer sums and resolved pixels
 
     std::uint64_t total() const { return geometry + textures + ray_queues + hits + shadow_queue + film; }
-    /// What the stages of one wave go through, beside scene and film: its rays, hits, shadow rays and children.
+    /// What the stages of one wave go through, beside scene and film: its rays, hits, shadow rays and children. Each
+    /// pipeline has one.
     std::uint64_t wave_bytes() const;
 };
 
 struct MemoryRequest {
     std::uint64_t queue_capacity = 0;  // rays; 0: as many as suit the device's compute units, or fit
     std::uint64_t limit = 0;           // bytes; 0: what the device has
-    int pipelines = 2;                 // of a frame with camera rays for more than one wave
+    int pipelines = 2;                 // at most; one where a wave holds all camera rays, or two do not fit
 };
 
 /// The plan for a frame of this scene. Throws DeviceError if it does not fit, with what to change.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "wavefront/memory_plan.hpp"
@@ -10,16 +11,17 @@
 
 namespace raymill {
 
-/// Waves of different pipelines run at the same time, those of one after another: while the host waits for a wave of one
-/// and launches its next, the device has that of another. Camera rays that begin in a pipeline and all that descend from
-/// them stay in it: so, with one sample a pixel, does the pixel.
+/// Waves of different pipelines run at the same time, those of one after another: while the host waits for a wave of
+/// one and launches its next, the device has that of another. So a stage may write what is its pipeline's, and to what
+/// all share add atomically. Camera rays that begin in a pipeline and all that descend from them stay in it; with one
+/// sample a pixel, the pixel is the pipeline's too, which is what pixels_once() relies on.
 struct Pipeline {
     Device device;  // with a command queue that no other pipeline has
     Waves waves;
     std::vector<Buffer<Ray>> queues;  // by depth
     Buffer<Hit> hits;
     ShadowQueue shadow_queue;
-    Film film;                    // sums that all pipelines add to, counters of its own
+    Film film;                     // sums that all pipelines add to, counters of its own
     std::optional<Batch> running;  // the wave that was launched last, while nobody has waited for it
 
     /// slots: most light samples of a pass. passes: over the light samples. sums: see Film.

@@ -28,31 +28,34 @@ std::vector<SlotRange> make_slot_ranges(uint slots) {
     return ranges;
 }
 
-/// What all passes of a frame counted; children are those of the last wave.
-Counters sum(const std::vector<Counters>& passes) {
-    Counters sum = passes.front();
-    for (const Counters& pass : std::span(passes).subspan(1)) {
-        sum.shadow_rays += pass.shadow_rays;
-        sum.shadow_traced += pass.shadow_traced;
-        sum.shadow_blocked += pass.shadow_blocked;
-        sum.saturated += pass.saturated;
-        sum.not_a_number += pass.not_a_number;
+/// What all pipelines and passes of a frame counted, of what is counted without a profile too.
+Counters sum(const std::vector<Counters>& parts) {
+    Counters sum = {};
+    for (const Counters& part : parts) {
+        sum.shadow_rays += part.shadow_rays;
+        sum.shadow_traced += part.shadow_traced;
+        sum.shadow_blocked += part.shadow_blocked;
+        sum.saturated += part.saturated;
+        sum.not_a_number += part.not_a_number;
     }
     return sum;
 }
 
-/// An exception must not leave waves on their way, into what the next frame begins with.
+/// An exception must not leave waves on their way, into what the next frame begins with, nor the second command queue
+/// in use.
 class IdleAtTheEnd {
   public:
-    explicit IdleAtTheEnd(const std::vector<Pipeline>& pipelines) : pipelines_(pipelines) {}
+    IdleAtTheEnd(const std::vector<Pipeline>& pipelines, Stages& stages) : pipelines_(pipelines), stages_(stages) {}
     IdleAtTheEnd(const IdleAtTheEnd&) = delete;
     IdleAtTheEnd& operator=(const IdleAtTheEnd&) = delete;
     ~IdleAtTheEnd() {
         for (const Pipeline& pipeline : pipelines_) clFinish(pipeline.device.queue());
+        stages_.launch_on(pipelines_.front().device.queue);
     }
 
   private:
     const std::vector<Pipeline>& pipelines_;
+    Stages& stages_;
 };
 
 }  // namespace
@@ -82,8 +85,8 @@ std::uint64_t Frame::hash() const {
 
 std::uint64_t Renderer::hash_film() const try {
     const std::size_t count = sums_.size(), bytes = count * sizeof(cl_long);
-    const auto* sums = static_cast<const cl_long*>(
-        device_.queue.enqueueMapBuffer(sums_.memory(), CL_TRUE, CL_MAP_READ, 0, bytes));
+    const auto* sums =
+        static_cast<const cl_long*>(device_.queue.enqueueMapBuffer(sums_.memory(), CL_TRUE, CL_MAP_READ, 0, bytes));
     const std::uint64_t hash = hash_of({sums, count});
     device_.queue.enqueueUnmapMemObject(sums_.memory(), const_cast<cl_long*>(sums));
     device_.queue.finish();
@@ -200,11 +203,12 @@ void Renderer::start(profile::Detail detail) {
 
 /// The pipelines by turns. What is shown or timed goes through one of them, wave by wave.
 void Renderer::trace_all(const Progress& progress) {
-    const IdleAtTheEnd idle_at_the_end(pipelines_);
+    const IdleAtTheEnd idle_at_the_end(pipelines_, stages_);
     const std::uint64_t samples = camera_samples(scene_);
-    const std::size_t pipelines = observer_ || profiler_ ? 1 : pipelines_.size();
+    const std::size_t in_use = observer_ || profiler_ ? 1 : pipelines_.size();
     bool going_on = true;
-    for (std::size_t turn = 0, idle = 0; idle < pipelines; turn = (turn + 1) % pipelines) {
+    // The end is where each pipeline in turn had nothing to begin: what it had before is finished.
+    for (std::size_t turn = 0, idle = 0; idle < in_use; turn = (turn + 1) % in_use) {
         Pipeline& pipeline = pipelines_[turn];
         finish_wave(pipeline);
         idle = begin_wave(pipeline, going_on ? samples - counts_.camera : 0) ? 0 : idle + 1;
@@ -238,10 +242,10 @@ Frame Renderer::read_frame() {
     frame.rgba = resolve();
     frame.samples_per_pixel = scene_.settings.spp;
     frame.planes = planes_;
-    std::vector<Counters> of_passes;
+    std::vector<Counters> parts;
     for (const Pipeline& pipeline : pipelines_)
-        for (const Counters& counters : pipeline.film.counters.read(device_)) of_passes.push_back(counters);
-    const Counters counters = sum(of_passes);
+        for (const Counters& part : pipeline.film.counters.read(device_)) parts.push_back(part);
+    const Counters counters = sum(parts);
     if (counters.shadow_rays != counters.shadow_traced)
         throw QueueMismatch(
             fmt::format("{} shadow rays were pushed and {} popped", counters.shadow_rays, counters.shadow_traced));
@@ -269,7 +273,6 @@ void Renderer::make_ready() {
 
 std::vector<float> Renderer::resolve() {
     Buffer<float> pixels = Buffer<float>::over(device_, rgba_);
-    stages_.launch_on(device_.queue);
     stages_.resolve(pipelines_.front().film, static_cast<uint>(scene_.settings.spp), pixels);
     pixels.read_back(device_);
     return std::move(rgba_);
@@ -308,8 +311,7 @@ void Renderer::finish_wave(Pipeline& pipeline) {
     }
     if (profiler_) profiler_->settle();
     const Film& film = pipeline.film;
-    const std::vector<Counters> counters =
-        film.counters.read(pipeline.device, 0, profiler_ ? film.counters.size() : 1);
+    const std::vector<Counters> counters = film.counters.read(pipeline.device, 0, profiler_ ? film.counters.size() : 1);
     if (goes_deeper) {
         const uint first = pipeline.waves.waiting(batch.depth + 1);
         const std::uint64_t children = counters.front().children;

@@ -76,12 +76,12 @@ struct WaveView {
     std::uint64_t first_sample;  // camera sample of the first ray, after generate
 };
 
-/// Called after each of "generate", "intersect", "shade", "shadow" and "secondary" has run, when the device is idle.
-/// There is one pipeline then.
+/// Called after each of "generate", "intersect", "shade", "shadow" and "secondary" has run, when the device is idle: one
+/// pipeline is used then.
 using WaveObserver = std::function<void(const char* stage, const WaveView& view)>;
 
-/// Called between waves with the share of camera samples done; returns false to stop: rays already generated are
-/// finished, no more are.
+/// Called when a wave has been launched, with the share of camera samples that have been generated; returns false to
+/// stop: these are finished, no more are generated.
 using Progress = std::function<bool(double share)>;
 
 class Renderer {

@@ -37,7 +37,8 @@ struct ShadowQueue {
 struct Film {
     Buffer<cl_long> sums;
     Buffer<Counters> counters;
-    /// No two items of the launches to come have the same pixel, so that they need not add atomically.
+    /// No two items of the launches to come have the same pixel, nor has any other launch that runs meanwhile, so that
+    /// they need not add atomically.
     bool pixels_once = false;
     /// The kernels count for a profile, too: see Counters.
     bool counted = false;
@@ -45,8 +46,9 @@ struct Film {
     uint pass = 0;
 };
 
-/// Film::pixels_once of launches on rays of this depth: camera rays of one sample a pixel have each its own. slots:
-/// light samples of the pass, for shadow, since a hit has a shadow ray for each.
+/// Film::pixels_once of launches on rays of this depth: camera rays of one sample a pixel have each its own, and what
+/// descends from them stays in their pipeline. slots: light samples of the pass, for shadow, since a hit has a shadow ray
+/// for each.
 inline bool pixels_once(int depth, int spp, uint slots = 1) {
     return depth == 0 && spp == 1 && slots == 1;
 }

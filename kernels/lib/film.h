@@ -83,7 +83,7 @@ static inline uint film_add_units(const Film* film, global long* sum, long units
     return plain ? 0 : 1;
 }
 
-/// Adds to all four channels of a pixel that no other item of the launch adds to; the channels that overflow, -1 each.
+/// Adds to all four channels of a pixel that nothing else that runs adds to; the channels that overflow, -1 each.
 static inline long4 film_add_alone(global long* sum, long4 units) {
     const ulong4 before = *(global const ulong4*)sum, after = before + as_ulong4(units);
     *(global ulong4*)sum = after;

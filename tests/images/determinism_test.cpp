@@ -3,6 +3,8 @@
 
 #include <stdexcept>
 #include <string>
+#include <tuple>
+#include <variant>
 
 #include "rendering.hpp"
 
@@ -196,28 +198,55 @@ TEST_F(OneFilm, comes_of_one_thread_and_of_two) {
     if (threads > 2) expect_same(options_with(997), open_device("", 2));
 }
 
-// What is shown or timed goes through one pipeline.
-TEST_F(OneFilm, comes_of_waves_of_two_pipelines_and_of_one) {
-    for (const int spp : {1, 4}) {
-        Scene scene = OneFilm::scene();
-        scene.settings.spp = spp;
-        const Bvh bvh = bvh_of(scene);
-        Renderer renderer(test_device(), scene, bvh, options_with(256));
-        ASSERT_EQ(renderer.memory().pipelines, 2);
-        const Frame both = renderer.render();
-        const Frame timed = renderer.render({}, profile::Detail::totals);
-        std::uint64_t waves_shown = 0;
-        renderer.observe([&](const std::string& stage, const WaveView&) { waves_shown += stage == "intersect"; });
-        const Frame shown = renderer.render();
-        EXPECT_EQ(shown.waves, waves_shown);
-        EXPECT_EQ(timed.waves, shown.waves);
-        for (const Frame& one : {timed, shown}) {
-            EXPECT_EQ(one.hash(), both.hash()) << differing_pixels(one, both) << " pixels differ";
-            EXPECT_EQ(one.rays.secondary, both.rays.secondary);
-            EXPECT_EQ(one.rays.shadow, both.rays.shadow);
-            EXPECT_EQ(one.shadow_blocked, both.shadow_blocked);
+TEST_F(OneFilm, comes_of_one_pipeline_and_of_two) {
+    RenderOptions options = options_with(256);
+    expect_same(options);
+    options.memory.pipelines = 1;
+    expect_same(options);
+}
+
+// All adds to the film are plain, while another pipeline's wave runs.
+TEST_F(OneFilm, of_local_light_with_one_sample_comes_of_one_pipeline_and_of_two) {
+    Scene local = scene();
+    local.settings.spp = 1;
+    local.settings.depth = 0;
+    std::erase_if(local.lights,
+                  [](const SceneLight& light) { return !std::holds_alternative<DirectionalLight>(light.light); });
+    ASSERT_EQ(local.lights.size(), 1u);
+    RenderOptions options = options_with(64);
+    options.memory.pipelines = 1;
+    const Frame one = render(local, options);
+    EXPECT_GT(one.rays.shadow, 200u);
+    options.memory.pipelines = 2;
+    for (int frame = 0; frame < 20; ++frame) ASSERT_EQ(render(local, options).hash(), one.hash());
+}
+
+TEST_F(OneFilm, that_is_shown_or_timed_goes_through_one_pipeline) {
+    const Bvh bvh = bvh_of(scene());
+    Renderer renderer(test_device(), scene(), bvh, options_with(256));
+    ASSERT_EQ(renderer.memory().pipelines, 2);
+    const Frame timed = renderer.render({}, profile::Detail::totals);
+    std::uint64_t waves = 0;
+    const Buffer<Hit>* hits = nullptr;
+    Batch batch;
+    renderer.observe([&](const std::string& stage, const WaveView& view) {
+        if (!hits) hits = &view.hits;
+        EXPECT_EQ(&view.hits, hits);
+        if (stage == "intersect") {
+            batch = view.batch;
+            ++waves;
+        } else if (stage != "generate") {  // of the same wave
+            EXPECT_EQ(std::tie(view.batch.depth, view.batch.first, view.batch.count),
+                      std::tie(batch.depth, batch.first, batch.count));
         }
-    }
+    });
+    const Frame shown = renderer.render();
+    EXPECT_EQ(shown.waves, waves);
+    EXPECT_EQ(timed.waves, waves);
+    EXPECT_EQ(shown.hash(), expected().hash());
+    EXPECT_EQ(timed.hash(), expected().hash());
+    renderer.observe({});
+    EXPECT_EQ(renderer.render().hash(), expected().hash());
 }
 
 TEST_F(OneFilm, comes_of_a_renderer_that_was_broken_off) {

@@ -1,4 +1,4 @@
-// Stopping between two waves: what was begun is finished, and nothing else is.
+// Stopping after a wave is launched: what was begun is finished, and nothing else is.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -99,7 +99,6 @@ TEST(the_memory_plan, has_two_pipelines_where_one_wave_does_not_hold_all_camera_
     EXPECT_EQ(two.hits, 2u * 7999u * sizeof(Hit));
     EXPECT_EQ(two.shadow_queue, 2 * one.shadow_queue);  // of as many chunks
     EXPECT_EQ(two.film, one.film);
-    EXPECT_EQ(plan_of(glass_scene(6), {7999, 0, 1}).pipelines, 1);
     EXPECT_EQ(one.wave_bytes() - two.wave_bytes(), 3 * sizeof(Ray) + sizeof(Hit));
 }
 
@@ -116,8 +115,22 @@ TEST(the_memory_plan, has_waves_that_grow_with_the_compute_units) {
     EXPECT_EQ(capacity(1), 8192u);
     EXPECT_EQ(capacity(2), 16384u);
     EXPECT_EQ(capacity(3), 16384u);
-    EXPECT_EQ(capacity(64), 524288u);
-    EXPECT_EQ(capacity(100000), 1048576u);
+    EXPECT_EQ(capacity(8), 65536u);
+    EXPECT_EQ(capacity(100000), 65536u);
+}
+
+TEST(the_memory_plan, does_with_one_pipeline_where_two_do_not_fit) {
+    const Scene scene = glass_scene(6);
+    EXPECT_EQ(plan_of(scene, {4000, 0, 1}).pipelines, 1);
+    const std::uint64_t two = plan_of(scene, {4000, 0}).total();
+    EXPECT_EQ(plan_of(scene, {4000, two}).pipelines, 2);
+    const MemoryPlan one = plan_of(scene, {4000, two - 1});
+    EXPECT_EQ(one.pipelines, 1);
+    EXPECT_EQ(one.queue_capacity, 4000u);
+    // By itself it takes smaller waves first.
+    const std::uint64_t smallest = plan_of(scene, {CHUNK, 0}).total();
+    EXPECT_EQ(plan_of(scene, {0, smallest}).pipelines, 2);
+    EXPECT_EQ(plan_of(scene, {0, smallest - 1}).pipelines, 1);
 }
 
 TEST(the_memory_plan, needs_no_queues_for_children_that_no_material_spawns) {
@@ -163,6 +176,18 @@ TEST(a_memory_limit, refuses_queues_beyond_the_largest_buffer) {
     small.largest_buffer = 1 << 20;
     EXPECT_THROW(plan_memory(scene, bvh_of(scene), {}, {1 << 16, 0}, small), DeviceError);
     EXPECT_LE(plan_memory(scene, bvh_of(scene), {}, {0, 0}, small).queue_capacity * 2 * sizeof(Ray), 1u << 20);
+}
+
+TEST(a_memory_limit, of_the_largest_buffer_is_that_of_one_pipeline) {
+    const Scene scene = glass_scene(0);
+    const Bvh bvh = bvh_of(scene);
+    DeviceInfo device = test_device().info;
+    const std::uint64_t queue = plan_memory(scene, bvh, {}, {4000, 0}, device).shadow_queue / 2;
+    ASSERT_GT(queue, plan_memory(scene, bvh, {}, {4000, 0}, device).film);
+    device.largest_buffer = queue;
+    EXPECT_EQ(plan_memory(scene, bvh, {}, {4000, 0}, device).pipelines, 2);
+    device.largest_buffer = queue - 1;
+    EXPECT_THROW(plan_memory(scene, bvh, {}, {4000, 0}, device), DeviceError);
 }
 
 TEST(human_bytes, have_a_unit_that_keeps_the_number_short) {
