@@ -201,6 +201,14 @@ void DeviceArguments::add_memory_to(CLI::App& command) {
     command.add_option("--mem-limit", mem_limit, "Device memory that may be used, as in 512M")->type_name("SIZE");
 }
 
+void DeviceArguments::add_pipelines_to(CLI::App& command) {
+    command
+        .add_option("--pipelines", pipelines, "Waves that run at the same time; the image does not depend on it")
+        ->type_name("N")
+        ->check(CLI::Range(1, 16))
+        ->capture_default_str();
+}
+
 void DeviceArguments::add_without_memory_to(CLI::App& command) {
     add_what_never_varies_to(command);
     threads_flag.add_to(command, threads, "Compute units to use; all by default");
@@ -238,6 +246,7 @@ RenderOptions DeviceArguments::options() const {
     RenderOptions options;
     options.memory.queue_capacity = queue_capacity;
     if (!mem_limit.empty()) options.memory.limit = parse_bytes(mem_limit);
+    options.memory.pipelines = pipelines;
     options.work_group = work_group;
     options.traversal = traversal;
     options.kernel_dir = kernel_dir;

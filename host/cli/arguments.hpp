@@ -40,6 +40,7 @@ struct DeviceArguments {
     std::uint32_t queue_capacity = 0;
     std::uint32_t work_group = 0;
     std::string mem_limit;
+    int pipelines = MemoryRequest{}.pipelines;
     Traversal traversal = Traversal::automatic;
     BvhQuality bvh = BvhQuality::high;
     std::string kernel_dir;
@@ -50,6 +51,8 @@ struct DeviceArguments {
     /// All but the threads, the queue capacity and the work-group.
     void add_fixed_to(CLI::App& command);
     void add_memory_to(CLI::App& command);
+    /// --pipelines, for commands that render frames of which nobody watches each wave.
+    void add_pipelines_to(CLI::App& command);
     /// Device, kernels, traversal and hierarchy.
     void add_what_never_varies_to(CLI::App& command);
     Device open() const { return open_device(device, threads); }

@@ -97,6 +97,7 @@ Command add_check_command(CLI::App& app) {
         *app.add_subcommand("check", "Load and validate a scene; print counts, bounds, memory and the hierarchy");
     arguments->scene.add_to(command);
     arguments->device.add_to(command);
+    arguments->device.add_pipelines_to(command);
     command.footer("Example:\n  raymill check scenes/first-light.toml\n\nAll faults of a scene are reported at once, with line and column; exit status 2.");
     return [arguments] { return check(*arguments); };
 }

@@ -192,6 +192,7 @@ Command add_profile_command(CLI::App& app) {
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     arguments->device.add_fixed_to(command);
+    arguments->device.add_pipelines_to(command);
     command.add_flag("--quiet", arguments->quiet, "Print the table only");
     command.footer(
         "Writes profile.csv, profile.json, trace.json (for Perfetto and chrome://tracing) and report.html.\n"

@@ -195,6 +195,7 @@ Command add_render_command(CLI::App& app) {
         ->type_name("LIST");
     command.add_flag("--half", arguments->half, "16-bit floats in the EXR file instead of 32-bit ones");
     arguments->device.add_to(command);
+    arguments->device.add_pipelines_to(command);
     command.add_flag("--stats", arguments->stats,
                      "Print what each stage did and where the time went, of a frame that goes wave by wave");
     command.add_option("--stats-json", arguments->stats_file, "The same for programs, with every launch")

@@ -51,7 +51,8 @@ TEST_F(Flags, that_make_no_sense_are_refused_by_name) {
         {"--crop", "nan,1,0,1"},   {"--mem-limit", "lots"},   {"--mem-limit", "12Q"}, {"--mem-limit", "0"},
         {"--mem-limit", "-5M"},    {"--mem-limit", ""},       {"--spp", "0"},         {"--depth", "-1"},
         {"--queue-capacity", "0"}, {"--work-group", "0"},     {"--threads", "0"},     {"--integrator", "magic"},
-        {"--exposure", "inf"},     {"--seed", "-1"},          {"--bvh", "best"},      {"--bvh", ""}};
+        {"--exposure", "inf"},     {"--seed", "-1"},          {"--bvh", "best"},      {"--bvh", ""},
+        {"--pipelines", "0"},      {"--pipelines", "17"}};
     for (const auto& flag : senseless) {
         SCOPED_TRACE(flag[0] + " '" + flag[1] + "'");
         // With an equals sign, so that a value that begins with a minus is one.
@@ -94,8 +95,11 @@ TEST_F(Flags, of_the_device_take_the_units_and_words_of_profile) {
     EXPECT_EQ(all.at("compute_units"), nlohmann::json::parse(read_bytes(stats)).at("run").at("compute_units"));
     EXPECT_TRUE(
         contains(check({"--depth", "0", "--queue-capacity", "2K"}).out, " 1 ray queues for batches of 2048 rays"));
-    EXPECT_TRUE(contains(check({"--depth", "0", "--queue-capacity", "64"}).out,
-                         " 2 times 1 ray queues for batches of 64 rays"));
+    const std::vector<std::string> small = {"--depth", "0", "--queue-capacity", "64"};
+    EXPECT_TRUE(contains(check(small).out, " 2 times 1 ray queues for batches of 64 rays"));
+    EXPECT_TRUE(contains(check({"--depth=0", "--queue-capacity=64", "--pipelines=1"}).out, " 1 ray queues for"));
+    EXPECT_TRUE(
+        contains(check({"--depth=0", "--queue-capacity=64", "--pipelines=4"}).out, " 4 times 1 ray queues for"));
 }
 
 TEST_F(Flags, say_the_size) {
@@ -144,6 +148,7 @@ TEST_F(Flags, of_the_device_do_not_change_the_picture) {
     EXPECT_TRUE(same_pixels(plain, render({"--queue-capacity", "7", "--work-group", "8", "--threads", "1"})));
     EXPECT_TRUE(same_pixels(plain, render({"--mem-limit", "1M", "--kernel-dir", RAYMILL_KERNELS})));
     EXPECT_TRUE(same_pixels(plain, render({"--bvh", "fast"})));
+    EXPECT_TRUE(same_pixels(plain, render({"--queue-capacity", "64", "--pipelines", "3"})));
     EXPECT_TRUE(same_pixels(plain, render({"--bvh", "high"})));
     EXPECT_FALSE(same_pixels(plain, render({"--depth", "0"})));
 }
