@@ -92,12 +92,9 @@ void Recorder::see(const std::string& stage, const WaveView& view) {
         if (launch == *request_.launch) take(view);
         return;
     }
-    const std::uint64_t in = items_in(view);
-    if (capture_ && in < most_in_) return;
-    const std::uint64_t out = items_out(view);
-    if (capture_ && in == most_in_ && out <= most_out_) return;
-    most_in_ = in;
-    most_out_ = out;
+    const Work work{items_out(view), items_in(view)};
+    if (capture_ && work <= most_) return;
+    most_ = work;
     take(view);
 }
 

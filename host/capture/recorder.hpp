@@ -1,6 +1,8 @@
 // Takes one launch out of a frame while it is rendered.
 #pragma once
 
+#include <compare>
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -20,8 +22,9 @@ struct Request {
 /// "DEPTH[:LAUNCH],STAGE,FILE". Throws UsageError.
 Request parse_request(const std::string& text);
 
-/// Keeps the launch that was asked for, of those that it is shown. The fullest has the most items in its input queue,
-/// and of several such writes the most items (hits, shadow rays, children); of equal ones it is the first.
+/// Keeps the launch that was asked for, of those that it is shown. The fullest writes the most items (hits, shadow
+/// rays, children; of generate and shadow nothing counts), and of several such has the most in its input queue; of equal
+/// ones it is the first.
 class Recorder {
   public:
     /// The device must outlive the recorder.
@@ -40,6 +43,11 @@ class Recorder {
     std::uint64_t launches() const { return launches_; }
 
   private:
+    /// Of two launches, that which writes more does more; items that miss, or hit what no light faces, are soon done with.
+    struct Work {
+        std::uint64_t items_out = 0, items_in = 0;
+        auto operator<=>(const Work&) const = default;
+    };
     void take(const WaveView& view);
     std::uint64_t items_in(const WaveView& view) const;
     std::uint64_t items_out(const WaveView& view) const;
@@ -47,7 +55,7 @@ class Recorder {
     const Device& device_;
     Request request_;
     std::uint64_t launches_ = 0;
-    std::uint64_t most_in_ = 0, most_out_ = 0;
+    Work most_;  // of the launches so far
     std::optional<Capture> capture_;
 };
 

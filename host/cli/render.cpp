@@ -216,8 +216,8 @@ Command add_render_command(CLI::App& app) {
         "  raymill render scene.toml --crop 0.25,0.75,0.25,0.75 --stats\n"
         "  raymill render scene.toml --capture 1,intersect,queue.wave\n\n"
         "--capture: STAGE is generate, intersect, shade, shadow or secondary, working on rays of DEPTH. LAUNCH counts\n"
-        "the launches of that stage at that depth from 0 on; without it, the fullest is written: that with the most\n"
-        "items in its queue, and of several such, that which writes the most.\n\n"
+        "the launches of that stage at that depth from 0 on; without it, the fullest is written: that which finds the\n"
+        "most hits, or pushes the most rays, and of several such, that with the most items in its queue.\n\n"
         "Exit status: 0 done; 1 the render failed; 2 bad arguments or bad input;\n"
         "130 interrupted, with what was rendered saved.");
     return [arguments] { return render(*arguments); };

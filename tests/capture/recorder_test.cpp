@@ -33,14 +33,14 @@ TEST(Request, that_makes_no_sense_is_refused_with_its_own_words) {
     }
 }
 
-/// Items in and out of each launch of intersect at depth 1.
-std::vector<std::pair<std::size_t, std::ptrdiff_t>> launches_of(TestFrame& frame) {
-    std::vector<std::pair<std::size_t, std::ptrdiff_t>> sizes;
+/// Items out and in of each launch of intersect at a depth.
+std::vector<std::pair<std::ptrdiff_t, std::size_t>> launches_of(TestFrame& frame, int depth = 1) {
+    std::vector<std::pair<std::ptrdiff_t, std::size_t>> sizes;
     frame.renderer.observe([&](const char* stage, const WaveView& view) {
-        if (stage != std::string("intersect") || view.batch.depth != 1) return;
+        if (stage != std::string("intersect") || view.batch.depth != depth) return;
         const auto hits = view.hits.read(frame.device, 0, view.rays.count);
-        sizes.emplace_back(view.rays.count,
-                           std::ranges::count_if(hits, [](const Hit& hit) { return hit.primitive != NO_INDEX; }));
+        sizes.emplace_back(std::ranges::count_if(hits, [](const Hit& hit) { return hit.primitive != NO_INDEX; }),
+                           view.rays.count);
     });
     frame.renderer.render();
     frame.renderer.observe({});
@@ -54,7 +54,18 @@ TEST(Recorder, takes_the_fullest_launch_and_of_equal_ones_the_first) {
     const auto fullest = std::ranges::max_element(sizes);  // the first of several
     const Capture capture = capture_of(frame, Stage::intersect, 1);
     EXPECT_EQ(capture.launch, static_cast<std::uint64_t>(fullest - sizes.begin()));
-    EXPECT_EQ(capture.count, fullest->first);
+    EXPECT_EQ(capture.count, fullest->second);
+}
+
+TEST(Recorder, takes_a_launch_with_more_hits_before_one_with_more_rays) {
+    Scene sky_above = branching_scene();
+    sky_above.camera.look_at.y += 2.2;
+    TestFrame frame(std::move(sky_above), {}, 640);
+    const auto sizes = launches_of(frame, 0);
+    const auto fullest = std::ranges::max_element(sizes);
+    const auto most_rays = std::ranges::max_element(sizes, {}, [](const auto& size) { return size.second; });
+    ASSERT_LT(fullest->second, most_rays->second);
+    EXPECT_EQ(capture_of(frame, Stage::intersect, 0).launch, static_cast<std::uint64_t>(fullest - sizes.begin()));
 }
 
 TEST(Recorder, takes_the_launch_that_is_named) {
@@ -63,7 +74,7 @@ TEST(Recorder, takes_the_launch_that_is_named) {
     for (std::uint64_t launch = 0; launch < sizes.size(); ++launch) {
         const Capture capture = capture_of(frame, Stage::intersect, 1, launch);
         EXPECT_EQ(capture.launch, launch);
-        EXPECT_EQ(capture.count, sizes[launch].first);
+        EXPECT_EQ(capture.count, sizes[launch].second);
     }
 }
 
