@@ -22,9 +22,9 @@ struct Request {
 /// "DEPTH[:LAUNCH],STAGE,FILE". Throws UsageError.
 Request parse_request(const std::string& text);
 
-/// Keeps the launch that was asked for, of those that it is shown. The fullest writes the most items (hits, shadow
-/// rays, children; of generate and shadow nothing counts), and of several such has the most in its input queue; of equal
-/// ones it is the first.
+/// Keeps the launch that was asked for, of those that it is shown. The fullest writes the most items (hits,
+/// shadow rays, children; of generate and shadow nothing counts), and of several such has the most in its input queue;
+/// of equal ones it is the first.
 class Recorder {
   public:
     /// The device must outlive the recorder.
@@ -43,7 +43,7 @@ class Recorder {
     std::uint64_t launches() const { return launches_; }
 
   private:
-    /// Of two launches, that which writes more does more; items that miss, or hit what no light faces, are soon done with.
+    /// Of two launches, that which writes more does more: items that miss, or hit what no light faces, are soon done.
     struct Work {
         std::uint64_t items_out = 0, items_in = 0;
         auto operator<=>(const Work&) const = default;

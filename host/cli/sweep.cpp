@@ -117,6 +117,7 @@ void Sweeper::measure(profile::Sweep& sweep, std::size_t index) {
     Renderer renderer(device, scene_, bvh_, options);
     setting.device_bytes = renderer.memory().total();
     setting.wave_bytes = renderer.memory().wave_bytes();
+    setting.pipelines = renderer.memory().pipelines;
     clock.timeline.measure("warm up", [&] { warm_up(renderer); });
     std::optional<profile::RunProfile> run;
     if (!setting.profile) {

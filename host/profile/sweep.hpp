@@ -26,6 +26,7 @@ struct SweepSetting {
     std::string skipped;                // why it was left out; empty if it was not
     std::uint64_t device_bytes = 0;     // the whole frame
     std::uint64_t wave_bytes = 0;       // what the stages of one wave go through, at most
+    int pipelines = 1;                  // waves at once
     std::uint64_t rays = 0;             // of a frame: camera, secondary and shadow
     std::vector<TimedFrame> frames;     // in the order in which they ran
     std::optional<RunProfile> profile;  // of one frame more; there once a frame has been timed

@@ -73,7 +73,8 @@ Json setting_json(const SweepSetting& setting, int repeats) {
                  {"state", state_name(setting, repeats)},
                  {"skipped", setting.skipped.empty() ? Json() : Json(setting.skipped)},
                  {"device_bytes", setting.device_bytes},
-                 {"wave_bytes", setting.wave_bytes}};
+                 {"wave_bytes", setting.wave_bytes},
+                 {"pipelines", setting.pipelines}};
     if (!setting.measured()) return json;
     const Spread seconds = spread(setting);
     json["rays"] = setting.rays;

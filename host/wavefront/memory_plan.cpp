@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 
 #include "wavefront/records.hpp"
 
@@ -11,8 +12,8 @@ namespace raymill {
 
 namespace {
 
-// Of a wave by default. On processors what 8k rays take stays in a compute unit's nearer caches; of larger waves than
-// 64k nothing was ever much faster, and deep recursion has many queues.
+// Of a wave by default. Larger ones than 8k a compute unit gain little where two run at once (docs/queues.md), and deep
+// recursion has many queues.
 constexpr std::uint64_t rays_a_compute_unit = 1u << 13, largest_default = 1u << 16;
 constexpr std::uint64_t smallest_default = CHUNK;
 
@@ -24,10 +25,12 @@ std::uint64_t default_capacity(const DeviceInfo& device) {
 
 MemoryPlan plan_with(const Scene& scene, const Bvh& bvh, const FilmPlanes& planes, std::uint64_t capacity,
                      int most_pipelines) {
+    assert(most_pipelines >= 1);
     const std::uint64_t depth = spawns_secondary_rays(scene) ? static_cast<std::uint64_t>(scene.settings.depth) : 0;
     const std::uint64_t chunks = (capacity + CHUNK - 1) / CHUNK;
     const std::uint64_t slots = std::min<std::uint64_t>(light_slots(scene).size(), SHADOW_SAMPLES);
-    const std::uint64_t pipelines = camera_samples(scene) > capacity ? static_cast<std::uint64_t>(most_pipelines) : 1;
+    const std::uint64_t camera_waves = std::max<std::uint64_t>((camera_samples(scene) + capacity - 1) / capacity, 1);
+    const std::uint64_t pipelines = std::min(camera_waves, static_cast<std::uint64_t>(most_pipelines));
 
     MemoryPlan plan;
     plan.queue_capacity = static_cast<uint>(capacity);
@@ -64,7 +67,7 @@ MemoryPlan plan_memory(const Scene& scene, const Bvh& bvh, const FilmPlanes& pla
     MemoryPlan plan = plan_with(scene, bvh, planes, capacity, request.pipelines);
     while (request.queue_capacity == 0 && !fits(plan) && capacity > smallest_default)
         plan = plan_with(scene, bvh, planes, capacity /= 2, request.pipelines);
-    if (!fits(plan)) plan = plan_with(scene, bvh, planes, capacity, 1);
+    while (!fits(plan) && plan.pipelines > 1) plan = plan_with(scene, bvh, planes, capacity, plan.pipelines - 1);
     if (!fits(plan))
         throw DeviceError(fmt::format(
             "the frame needs {} (scene {}, film {}, queues of {} rays {}), more than the {} of {}: lower {}",

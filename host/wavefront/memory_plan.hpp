@@ -32,7 +32,7 @@ struct MemoryPlan {
 struct MemoryRequest {
     std::uint64_t queue_capacity = 0;  // rays; 0: as many as suit the device's compute units, or fit
     std::uint64_t limit = 0;           // bytes; 0: what the device has
-    int pipelines = 2;                 // at most; one where a wave holds all camera rays, or two do not fit
+    int pipelines = 2;                 // at most, 1 or more: fewer where camera rays fill fewer waves or so many do not fit
 };
 
 /// The plan for a frame of this scene. Throws DeviceError if it does not fit, with what to change.

@@ -41,8 +41,8 @@ Counters sum(const std::vector<Counters>& parts) {
     return sum;
 }
 
-/// An exception must not leave waves on their way, into what the next frame begins with, nor the second command queue
-/// in use.
+/// An exception must not leave waves on their way, into what the next frame begins with, nor another pipeline's command
+/// queue in use.
 class IdleAtTheEnd {
   public:
     IdleAtTheEnd(const std::vector<Pipeline>& pipelines, Stages& stages) : pipelines_(pipelines), stages_(stages) {}

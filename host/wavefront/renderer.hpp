@@ -80,8 +80,8 @@ struct WaveView {
 /// pipeline is used then.
 using WaveObserver = std::function<void(const char* stage, const WaveView& view)>;
 
-/// Called when a wave has been launched, with the share of camera samples that have been generated; returns false to
-/// stop: these are finished, no more are generated.
+/// Called when a wave has been launched, before it has run, with the share of camera samples that have been generated;
+/// returns false to stop: these are finished, no more are generated.
 using Progress = std::function<bool(double share)>;
 
 class Renderer {

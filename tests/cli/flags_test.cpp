@@ -93,13 +93,14 @@ TEST_F(Flags, of_the_device_take_the_units_and_words_of_profile) {
     EXPECT_EQ(all.at("work_group"), 8);
     render({"--stats-json", stats});
     EXPECT_EQ(all.at("compute_units"), nlohmann::json::parse(read_bytes(stats)).at("run").at("compute_units"));
-    EXPECT_TRUE(
-        contains(check({"--depth", "0", "--queue-capacity", "2K"}).out, " 1 ray queues for batches of 2048 rays"));
+    EXPECT_TRUE(contains(check({"--depth", "0", "--queue-capacity", "2K"}).out,
+                         "\n            1 ray queues for batches of 2048 rays"));
     const std::vector<std::string> small = {"--depth", "0", "--queue-capacity", "64"};
-    EXPECT_TRUE(contains(check(small).out, " 2 times 1 ray queues for batches of 64 rays"));
-    EXPECT_TRUE(contains(check({"--depth=0", "--queue-capacity=64", "--pipelines=1"}).out, " 1 ray queues for"));
+    EXPECT_TRUE(contains(check(small).out, "\n            2 times 1 ray queues for batches of 64 rays"));
     EXPECT_TRUE(
-        contains(check({"--depth=0", "--queue-capacity=64", "--pipelines=4"}).out, " 4 times 1 ray queues for"));
+        contains(check({"--depth=0", "--queue-capacity=64", "--pipelines=1"}).out, "\n            1 ray queues for"));
+    EXPECT_TRUE(contains(check({"--depth=0", "--queue-capacity=64", "--pipelines=4"}).out,
+                         "\n            4 times 1 ray queues for"));
 }
 
 TEST_F(Flags, say_the_size) {

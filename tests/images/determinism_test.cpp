@@ -205,20 +205,25 @@ TEST_F(OneFilm, comes_of_one_pipeline_and_of_two) {
     expect_same(options);
 }
 
-// All adds to the film are plain, while another pipeline's wave runs.
-TEST_F(OneFilm, of_local_light_with_one_sample_comes_of_one_pipeline_and_of_two) {
-    Scene local = scene();
-    local.settings.spp = 1;
+// With one sample a pixel, adds of camera rays are plain while another pipeline's wave runs: all adds without recursion
+// and with one light sample; else beside atomic adds of deeper rays of the same pixels, which stay in their pipeline.
+TEST_F(OneFilm, of_one_sample_a_pixel_comes_of_one_pipeline_and_of_several) {
+    Scene single = scene();
+    single.settings.spp = 1;
+    Scene local = single;
     local.settings.depth = 0;
-    std::erase_if(local.lights,
-                  [](const SceneLight& light) { return !std::holds_alternative<DirectionalLight>(light.light); });
+    std::erase_if(local.lights, [](const SceneLight& l) { return !std::holds_alternative<DirectionalLight>(l.light); });
     ASSERT_EQ(local.lights.size(), 1u);
-    RenderOptions options = options_with(64);
-    options.memory.pipelines = 1;
-    const Frame one = render(local, options);
-    EXPECT_GT(one.rays.shadow, 200u);
-    options.memory.pipelines = 2;
-    for (int frame = 0; frame < 20; ++frame) ASSERT_EQ(render(local, options).hash(), one.hash());
+    for (const Scene& scene : {single, local}) {
+        RenderOptions options = options_with(64);
+        options.memory.pipelines = 1;
+        const Frame one = render(scene, options);
+        EXPECT_GT(one.rays.shadow, 200u);
+        const Bvh bvh = bvh_of(scene);
+        options.memory.pipelines = 4;
+        Renderer renderer(test_device(), scene, bvh, options);
+        for (int frame = 0; frame < 10; ++frame) ASSERT_EQ(renderer.render().hash(), one.hash());
+    }
 }
 
 TEST_F(OneFilm, that_is_shown_or_timed_goes_through_one_pipeline) {
@@ -250,13 +255,21 @@ TEST_F(OneFilm, that_is_shown_or_timed_goes_through_one_pipeline) {
 }
 
 TEST_F(OneFilm, comes_of_a_renderer_that_was_broken_off) {
-    const Bvh bvh = bvh_of(scene());
-    Renderer renderer(test_device(), scene(), bvh, options_with(256));
-    int waves = 0;
-    const auto break_off = [&](double) -> bool { return ++waves < 5 ? true : throw std::runtime_error("no more"); };
-    EXPECT_THROW(renderer.render(break_off), std::runtime_error);
-    EXPECT_EQ(waves, 5);
-    EXPECT_EQ(renderer.render().hash(), expected().hash());
+    Scene many = scene();
+    many.settings.spp = 32;
+    const Frame whole = render(many);
+    const Bvh bvh = bvh_of(many);
+    Renderer renderer(test_device(), many, bvh, options_with(40 * 30 * 32 / 2));
+    ASSERT_EQ(renderer.memory().pipelines, 2);
+    for (const int last : {1, 2, 3}) {
+        int waves = 0;
+        const auto break_off = [&](double) -> bool {
+            return ++waves < last ? true : throw std::runtime_error("no more");
+        };
+        EXPECT_THROW(renderer.render(break_off), std::runtime_error);
+        EXPECT_EQ(waves, last);
+        EXPECT_EQ(renderer.render().hash(), whole.hash());
+    }
 }
 
 TEST_F(OneFilm, comes_again_of_the_same_renderer) {

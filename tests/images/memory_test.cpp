@@ -122,6 +122,8 @@ TEST(the_memory_plan, has_waves_that_grow_with_the_compute_units) {
 TEST(the_memory_plan, does_with_one_pipeline_where_two_do_not_fit) {
     const Scene scene = glass_scene(6);
     EXPECT_EQ(plan_of(scene, {4000, 0, 1}).pipelines, 1);
+    EXPECT_EQ(plan_of(scene, {4000, 0, 16}).pipelines, 2);  // camera rays are two waves
+    EXPECT_EQ(plan_of(scene, {1000, plan_of(scene, {1000, 0, 4}).total() - 1, 4}).pipelines, 3);
     const std::uint64_t two = plan_of(scene, {4000, 0}).total();
     EXPECT_EQ(plan_of(scene, {4000, two}).pipelines, 2);
     const MemoryPlan one = plan_of(scene, {4000, two - 1});

@@ -76,8 +76,8 @@ TEST(SweepJson, has_the_documented_keys) {
     EXPECT_EQ(keys_of(json["finding"]), (Keys{"headline", "best", "knee", "knee_tolerance", "below_knee",
                                               "loss_below_knee", "as_good", "same_image", "film_hash", "other_image"}));
     EXPECT_EQ(keys_of(json["settings"][0]),
-              (Keys{"queue_capacity", "work_group", "threads", "state", "skipped", "device_bytes", "wave_bytes", "rays",
-                    "rays_per_second", "seconds", "frames", "profile"}));
+              (Keys{"queue_capacity", "work_group", "threads", "state", "skipped", "device_bytes", "wave_bytes",
+                    "pipelines", "rays", "rays_per_second", "seconds", "frames", "profile"}));
     EXPECT_EQ(keys_of(json["timeline"]), (Keys{"setting", "launches_left_out", "profile"}));
 }
 
