@@ -202,8 +202,7 @@ void DeviceArguments::add_memory_to(CLI::App& command) {
 }
 
 void DeviceArguments::add_pipelines_to(CLI::App& command) {
-    command
-        .add_option("--pipelines", pipelines, "Waves at once, at most; one where the frame is timed or captured; the image does not depend on it")
+    command.add_option("--pipelines", pipelines, "Waves at once, at most; the image does not depend on it")
         ->type_name("N")
         ->check(CLI::Range(1, 16))
         ->capture_default_str();

@@ -217,7 +217,8 @@ Command add_render_command(CLI::App& app) {
         "  raymill render scene.toml --capture 1,intersect,queue.wave\n\n"
         "--capture: STAGE is generate, intersect, shade, shadow or secondary, working on rays of DEPTH. LAUNCH counts\n"
         "the launches of that stage at that depth from 0 on; without it, the fullest is written: that which finds the\n"
-        "most hits, or pushes the most rays, and of several such, that with the most items in its queue.\n\n"
+        "most hits, or pushes the most rays, and of several such, that with the most items in its queue.\n"
+        "With --capture, --stats, --stats-json or --trace the frame goes wave by wave, as by --pipelines 1: slower.\n\n"
         "Exit status: 0 done; 1 the render failed; 2 bad arguments or bad input;\n"
         "130 interrupted, with what was rendered saved.");
     return [arguments] { return render(*arguments); };

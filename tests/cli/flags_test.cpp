@@ -91,6 +91,9 @@ TEST_F(Flags, of_the_device_take_the_units_and_words_of_profile) {
     const auto all = run("1m", "8", "all");
     EXPECT_EQ(all.at("queue_capacity"), 1 << 20);
     EXPECT_EQ(all.at("work_group"), 8);
+    const auto one = run("64", "auto", "all");
+    render({"--stats-json", stats, "--queue-capacity", "64", "--pipelines", "4"});  // is timed wave by wave
+    EXPECT_EQ(nlohmann::json::parse(read_bytes(stats)).at("run").at("device_bytes"), one.at("device_bytes"));
     render({"--stats-json", stats});
     EXPECT_EQ(all.at("compute_units"), nlohmann::json::parse(read_bytes(stats)).at("run").at("compute_units"));
     EXPECT_TRUE(contains(check({"--depth", "0", "--queue-capacity", "2K"}).out,
