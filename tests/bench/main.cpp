@@ -29,6 +29,7 @@ struct Arguments {
     std::optional<double> fov;
     std::string size;
     std::string traversal = "all";
+    std::vector<std::string> kernel_dirs;
     std::string quality = "both";
     std::string device;
     std::string json;
@@ -47,18 +48,25 @@ void add_options(CLI::App& app, Arguments& a) {
     app.add_option("--triangles", a.triangles,
                    "Triangles of each made scene, about (default 1e6); the largest for --scaling (default 1e7)")
         ->check(CLI::Range(100.0, 5e7));
-    app.add_flag("--scaling", a.scaling,
-                 "Instead: how the time of a ray grows with the made scenes, threads, queues and images")
-        ->excludes(app.add_option("--mesh", a.mesh, "A model or a scene file")->check(CLI::ExistingFile));
+    CLI::Option* scaling =
+        app.add_flag("--scaling", a.scaling,
+                     "Instead: how the time of a ray grows with the made scenes, threads, queues and images");
+    scaling->excludes(app.add_option("--mesh", a.mesh, "A model or a scene file")->check(CLI::ExistingFile));
     app.add_option("--eye", a.eye, "Camera of --mesh: x y z; without it the model is framed")->expected(3);
     app.add_option("--look-at", a.look_at, "What it looks at: x y z")->expected(3);
     app.add_option("--fov", a.fov, "Vertical field of view in degrees")->check(CLI::Range(1.0, 170.0));
     app.add_option("--size", a.size, "Camera rays, WIDTHxHEIGHT, rounded up to tiles of 8 (default 1024x768)");
+    app.add_option("--rays", a.measure.sets, "Sets of rays, as in S,A; all of them without this")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"P", "S", "A", "R", "T", "D"}));
     app.add_option("--rounds", a.measure.rounds, "Times that each variant runs (11 and more for medians)")
         ->check(CLI::Range(1, 1000));
     app.add_option("--builds", a.measure.builds, "Times that each hierarchy is built")->check(CLI::Range(1, 100));
     app.add_option("--traversal", a.traversal, "Which of our kernels")
         ->check(CLI::IsMember({"automatic", "packet", "single", "all"}));
+    app.add_option("--kernel-dir", a.kernel_dirs, "Folders of other kernels, to be measured beside the project's")
+        ->check(CLI::ExistingDirectory)
+        ->excludes(scaling);
     static const std::map<std::string, BvhQuality> qualities = {{"fast", BvhQuality::fast}, {"high", BvhQuality::high}};
     app.add_option("--bvh", a.measure.bvh, "Our hierarchy, fast or high")
         ->transform(CLI::CheckedTransformer(qualities).description(""));
@@ -132,7 +140,7 @@ void run_scaling(const Arguments& a) {
 
 /// Whether both sides agreed everywhere.
 bool run(const Arguments& a) {
-    const RaymillKernels kernels(a.device, a.measure.threads, traversals(a.traversal));
+    const RaymillKernels kernels(a.device, a.measure.threads, traversals(a.traversal), a.kernel_dirs);
     const Circumstances circumstances = circumstances_of(a, kernels.device().info);
     print_heading(circumstances);
     std::vector<SceneResult> results;

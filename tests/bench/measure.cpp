@@ -108,9 +108,11 @@ SceneResult measure(const BenchScene& bench, const RaymillKernels& kernels, cons
 
     RaymillSide side(kernels, scene, hierarchy.bvh());
     const RaySet camera = camera_rays(scene.camera, options.width, options.height);
-    result.sets.push_back(measure_set(camera, side, embree, options));
-    for (const RaySet& set : bounced_rays(bench, camera, embree.closest_hits(camera.rays)))
-        result.sets.push_back(measure_set(set, side, embree, options));
+    const auto add = [&](const RaySet& set) {
+        if (options.wants(set.name)) result.sets.push_back(measure_set(set, side, embree, options));
+    };
+    add(camera);
+    for (const RaySet& set : bounced_rays(bench, camera, embree.closest_hits(camera.rays))) add(set);
     return result;
 }
 

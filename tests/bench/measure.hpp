@@ -1,6 +1,7 @@
 // Runs both sides in turn and compares what they find.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -67,6 +68,9 @@ struct MeasureOptions {
     BvhQuality bvh = BvhQuality::high;                                  // of our hierarchy
     bool robust = false;                                                // Embree's watertight mode
     std::vector<Quality> qualities = {Quality::medium, Quality::high};  // of Embree's hierarchies, at least one
+    std::vector<std::string> sets;                                      // names of those to trace; empty: all
+
+    bool wants(const std::string& set) const { return sets.empty() || std::ranges::find(sets, set) != sets.end(); }
 };
 
 /// A set's ratio of what the renderer chooses by itself to Embree's best, over scenes.

@@ -1,6 +1,7 @@
 #include "raymill_side.hpp"
 
 #include <chrono>
+#include <filesystem>
 
 #include "device/program.hpp"
 
@@ -72,17 +73,22 @@ Build RaymillHierarchy::build() {
                               bvh_.sphere_blocks.size() * sizeof(SphereBlock)};
 }
 
-RaymillKernels::RaymillKernels(const std::string& device, unsigned threads, const std::vector<Traversal>& traversals)
+RaymillKernels::RaymillKernels(const std::string& device, unsigned threads, const std::vector<Traversal>& traversals,
+                               const std::vector<std::string>& folders)
     : device_(open_device(device, threads)) {
     for (const Traversal traversal : traversals) {
-        const bool packets =
-            traversal == Traversal::packet || (traversal == Traversal::automatic && device_.info.type == "CPU");
-        const cl::Program program = build_program(device_, {"../tests/bench/traversal.cl"}, RAYMILL_KERNELS,
-                                                  packets ? "-DRAYMILL_PACKETS" : "");
-        kinds_.push_back({name_of(traversal), std::make_unique<Stages>(device_, 0, "", traversal),
-                          make_kernel(program, "closest"), make_kernel(program, "occlusion"),
-                          packets ? std::size_t{CHUNK} : 1});
+        add(traversal, RAYMILL_KERNELS, name_of(traversal));
+        for (const std::string& folder : folders) add(traversal, folder, name_of(traversal) + " " + folder);
     }
+}
+
+void RaymillKernels::add(Traversal traversal, const std::string& folder, const std::string& name) {
+    const bool packets =
+        traversal == Traversal::packet || (traversal == Traversal::automatic && device_.info.type == "CPU");
+    const std::string file = std::filesystem::relative(RAYMILL_KERNELS "/../tests/bench/traversal.cl", folder);
+    const cl::Program program = build_program(device_, {file}, folder, packets ? "-DRAYMILL_PACKETS" : "");
+    kinds_.push_back({name, std::make_unique<Stages>(device_, 0, folder, traversal), make_kernel(program, "closest"),
+                      make_kernel(program, "occlusion"), packets ? std::size_t{CHUNK} : 1});
 }
 
 std::vector<Variant> RaymillSide::variants(const RaySet& set) {

@@ -30,8 +30,10 @@ class RaymillHierarchy {
 /// The kernels, built once a traversal, for any number of scenes.
 class RaymillKernels {
   public:
-    /// device, threads: see open_device. Throws DeviceError.
-    RaymillKernels(const std::string& device, unsigned threads, const std::vector<Traversal>& traversals);
+    /// device, threads: see open_device. folders: of other kernels, to be measured beside the project's. Throws
+    /// DeviceError.
+    RaymillKernels(const std::string& device, unsigned threads, const std::vector<Traversal>& traversals,
+                   const std::vector<std::string>& folders = {});
 
     struct Kind {
         std::string name;
@@ -43,6 +45,8 @@ class RaymillKernels {
     const std::vector<Kind>& kinds() const { return kinds_; }
 
   private:
+    void add(Traversal traversal, const std::string& folder, const std::string& name);
+
     Device device_;
     std::vector<Kind> kinds_;
 };

@@ -60,11 +60,13 @@ Json json_of(const SetSummary& summary) {
 
 Json json_of(const ScalingTable& table) {
     Json rows = Json::array();
-    for (const ScalingRow& row : table.rows)
+    for (const ScalingRow& row : table.rows) {
         rows.push_back({{"name", row.name},
                         {"nanoseconds", row.nanoseconds},
                         {table.factor, row.factor},
                         {"keeps_limit", table.keeps_limit(row)}});
+        if (row.embree) rows.back()["embree"] = *row.embree;
+    }
     return {{"title", table.title}, {"columns", table.columns}, {"limit", table.limit}, {"rows", rows}};
 }
 
@@ -109,7 +111,8 @@ void print_scaling(const ScalingTable& table) {
     for (const ScalingRow& row : table.rows) {
         fmt::print("  {:<6}", row.name);
         for (const double time : row.nanoseconds) fmt::print("{:>10.1f}", time);
-        fmt::print("{:>10.2f}{}\n", row.factor, table.keeps_limit(row) ? "" : "  <-");
+        fmt::print("{:>10.2f}{}{}\n", row.factor, row.embree ? fmt::format("  (Embree {:.2f})", *row.embree) : "",
+                   table.keeps_limit(row) ? "" : "  <-");
     }
 }
 

@@ -20,14 +20,12 @@ constexpr double usual_scene = 1e6;
 constexpr int smallest_queue_bits = 10;
 constexpr int smallest_image_bits = 6;
 
-/// All sets of rays that are not empty.
-std::vector<RaySet> ray_sets(const BenchScene& bench, const MeasureOptions& options) {
-    EmbreeSide embree(bench.scene, options.threads, false);
-    embree.build(Quality::medium);
+/// All wanted sets of rays that are not empty, from what a peer that is built hits.
+std::vector<RaySet> ray_sets(const BenchScene& bench, const EmbreeSide& embree, const MeasureOptions& options) {
     const RaySet camera = camera_rays(bench.scene.camera, options.width, options.height);
     std::vector<RaySet> sets = bounced_rays(bench, camera, embree.closest_hits(camera.rays));
     sets.insert(sets.begin(), camera);
-    std::erase_if(sets, [](const RaySet& set) { return set.rays.empty(); });
+    std::erase_if(sets, [&](const RaySet& set) { return set.rays.empty() || !options.wants(set.name); });
     return sets;
 }
 
@@ -58,22 +56,40 @@ Work trace_of(RaymillSide& side, const RaySet& set) {
     return {side.variants(set).front().trace, static_cast<double>(set.rays.size())};
 }
 
+/// Embree with a hierarchy over a scene.
+struct Peer : EmbreeSide {
+    Peer(const BenchScene& bench, const MeasureOptions& options)
+        : EmbreeSide(bench.scene, options.threads, options.robust) {
+        build(Quality::medium);
+    }
+};
+
+/// Median nanoseconds a ray of Embree's fastest call.
+double time_best(const EmbreeSide& embree, const RaySet& set, const MeasureOptions& options) {
+    std::vector<Work> works;
+    for (const Variant& variant : embree.variants(set))
+        works.push_back({variant.trace, static_cast<double>(set.rays.size())});
+    return std::ranges::min(time_in_turn(works, options.rounds, options.clock));
+}
+
 /// A made scene, ready to be traced.
 struct PreparedScene {
     PreparedScene(BenchScene made, const RaymillKernels& kernels, const MeasureOptions& options)
         : bench(std::move(made)),
-          sets(ray_sets(bench, options)),
+          peer(bench, options),
+          sets(ray_sets(bench, peer, options)),
           hierarchy(bench.scene, {options.threads, options.bvh}) {
         hierarchy.build();
         side.emplace(kernels, bench.scene, hierarchy.bvh());
     }
-    /// Nothing where no ray is in the set.
-    std::optional<Work> trace(const std::string& name) {
-        const auto set = std::ranges::find(sets, name, &RaySet::name);
-        return set == sets.end() ? std::nullopt : std::optional(trace_of(*side, *set));
+    /// Null where no ray is in the set.
+    const RaySet* set(const std::string& name) const {
+        const auto found = std::ranges::find(sets, name, &RaySet::name);
+        return found == sets.end() ? nullptr : &*found;
     }
 
     BenchScene bench;
+    Peer peer;
     std::vector<RaySet> sets;
     RaymillHierarchy hierarchy;  // the side may share its memory
     std::optional<RaymillSide> side;
@@ -90,10 +106,12 @@ ScalingTable by_scene(const Recipe& recipe, const ScalingOptions& options) {
     for (const RaySet& set : scenes.front()->sets) {
         std::vector<Work> works;
         for (const auto& scene : scenes)
-            if (const auto work = scene->trace(set.name)) works.push_back(*work);
+            if (const RaySet* same = scene->set(set.name)) works.push_back(trace_of(*scene->side, *same));
         if (works.size() < scenes.size()) continue;
         ScalingRow row{set.name, time_in_turn(works, options.measure.rounds, options.measure.clock), 1};
         row.factor = row.nanoseconds.back() / row.nanoseconds.front();
+        row.embree = time_best(scenes.back()->peer, *scenes.back()->set(set.name), options.measure) /
+                     time_best(scenes.front()->peer, set, options.measure);
         table.rows.push_back(row);
     }
     return table;
@@ -114,7 +132,7 @@ ScalingTable by_threads(const Recipe& recipe, const ScalingOptions& options, con
         kernels.push_back(std::make_unique<RaymillKernels>(options.device, threads, std::vector{Traversal::automatic}));
         sides.push_back(std::make_unique<RaymillSide>(*kernels.back(), bench.scene, hierarchy.bvh()));
     }
-    for (const RaySet& set : ray_sets(bench, options.measure)) {
+    for (const RaySet& set : ray_sets(bench, Peer(bench, options.measure), options.measure)) {
         std::vector<Work> works;
         for (const auto& side : sides) works.push_back(trace_of(*side, set));
         ScalingRow row{set.name, time_in_turn(works, options.measure.rounds, Clock::wall), 1};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@ struct ScalingRow {
     std::string name;
     std::vector<double> nanoseconds;  // a ray, medians, by column
     double factor = 1;
+    std::optional<double> embree{};  // the same factor of Embree's fastest calls, where measured
 };
 
 /// One question: its rows are measured alike, and their factors are to keep a limit.
@@ -43,7 +45,7 @@ struct ScalingOptions {
 
 /// Answers all questions for one made scene, each table handed over as soon as it is there:
 ///   scene    10k triangles, ten times as many, ... up to the largest; our automatic choice, each set of rays;
-///            all scenes are held at once, to be traced in turn
+///            all scenes are held at once, to be traced in turn; of Embree the growth from the first to the last
 ///   threads  1, 2, 4 ... up to all, by the wall clock; not where there is but one
 ///   queue    frames of one light and one reflection, queue capacities 2^k - 1, 2^k, 2^k + 1, and the default
 ///   image    the same frames, square, as wide, up to twice the measured image

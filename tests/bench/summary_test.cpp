@@ -52,6 +52,14 @@ TEST(Summary, finds_the_largest_difference_of_any_variant) {
     EXPECT_EQ(scene.worst_difference(), 0.25);
 }
 
+TEST(MeasureOptions, want_all_sets_or_those_named) {
+    MeasureOptions options;
+    EXPECT_TRUE(options.wants("P"));
+    options.sets = {"S", "A"};
+    EXPECT_FALSE(options.wants("P"));
+    EXPECT_TRUE(options.wants("A"));
+}
+
 TEST(ScalingTable, wants_growth_below_and_speed_up_above_its_limit) {
     const ScalingRow row{"P", {1, 2}, 2};
     EXPECT_TRUE((ScalingTable{"", {}, "growth", 4, false, {}}.keeps_limit(row)));
