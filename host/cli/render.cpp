@@ -76,7 +76,7 @@ void write_picture(const RenderArguments& arguments, const Scene& scene, Frame& 
         write_png(arguments.output, image, scene.settings.exposure);
     else
         write_exr(arguments.output, image, layers, metadata_of(scene, frame.seconds),
-                  arguments.half ? ExrPixels::half16 : ExrPixels::float32);
+                  arguments.half ? ExrPixels::half16 : ExrPixels::float32, arguments.device.threads);
 }
 
 void warn_of_dropped(const BvhStatistics& statistics) {

@@ -17,6 +17,7 @@
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfThreading.h>
 #include <fmt/format.h>
 #include <sys/types.h>
 
@@ -25,6 +26,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <thread>
 #include <utility>
 
 #include "image/image.hpp"
@@ -119,7 +121,7 @@ void add_channels(const ImageLayer& layer, const void* memory, Imf::PixelType ty
 }
 
 void write_layers(const std::string& file, const std::string& temporary, Imf::Header header,
-                  const std::vector<const ImageLayer*>& layers, ExrPixels pixels) {
+                  const std::vector<const ImageLayer*>& layers, ExrPixels pixels, int threads) {
     Imf::FrameBuffer frame_buffer;
     std::vector<std::vector<Imath::half>> halves;
     for (const ImageLayer* layer : layers) {
@@ -135,7 +137,7 @@ void write_layers(const std::string& file, const std::string& temporary, Imf::He
 
     FileStream stream(temporary, file);
     try {
-        Imf::OutputFile output(stream, header);
+        Imf::OutputFile output(stream, header, threads);
         output.setFrameBuffer(frame_buffer);
         output.writePixels(header.dataWindow().size().y + 1);
     } catch (const Iex::BaseExc& error) {
@@ -147,14 +149,17 @@ void write_layers(const std::string& file, const std::string& temporary, Imf::He
 }  // namespace
 
 void write_exr(const std::string& file, const Image& image, const std::vector<ImageLayer>& layers,
-               const ImageMetadata& metadata, ExrPixels pixels) {
+               const ImageMetadata& metadata, ExrPixels pixels, unsigned threads) {
     assert(image.width > 0 && image.height > 0);
     assert(image.rgba.size() == 4 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
     const ImageLayer beauty{{"R", "G", "B", "A"}, image.rgba, false};
     std::vector<const ImageLayer*> all = {&beauty};
     for (const ImageLayer& layer : layers) all.push_back(&layer);
     const Imf::Header header = make_header(image, metadata);
-    write_atomically(file, [&](const std::string& temporary) { write_layers(file, temporary, header, all, pixels); });
+    const int workers = static_cast<int>(threads > 0 ? threads : std::thread::hardware_concurrency());
+    Imf::setGlobalThreadCount(workers);
+    write_atomically(
+        file, [&](const std::string& temporary) { write_layers(file, temporary, header, all, pixels, workers); });
 }
 
 }  // namespace raymill

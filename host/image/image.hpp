@@ -49,9 +49,10 @@ enum class ImageFormat { exr, png };
 /// What the extension of `file` (.exr or .png, in any case) asks for. Throws UsageError for any other.
 ImageFormat image_format(const std::string& file);
 
-/// Channels R G B A and those of the layers, ZIP compression. Atomic as write_atomically is. Throws OutputError.
+/// Channels R G B A and those of the layers, ZIP compression by so many threads, 0 for all; the file does not depend on
+/// their number. Atomic as write_atomically is. Throws OutputError.
 void write_exr(const std::string& file, const Image& image, const std::vector<ImageLayer>& layers,
-               const ImageMetadata& metadata, ExrPixels pixels);
+               const ImageMetadata& metadata, ExrPixels pixels, unsigned threads = 0);
 
 /// 8-bit sRGB after 2^exposure, values clamped to [0, 1] and NaN black; opaque, whatever the image's alpha.
 /// Atomic as write_atomically is. Throws OutputError.

@@ -1,11 +1,14 @@
 // PNG output through libpng's simplified interface, which declares 8-bit images as sRGB by an sRGB chunk.
 #include <png.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <memory>
+#include <ranges>
 
 #include "image/image.hpp"
 #include "common/files.hpp"
@@ -21,14 +24,28 @@ std::uint8_t srgb_code(double linear) {
     return static_cast<std::uint8_t>(std::lround(255 * encoded));
 }
 
+SrgbEncoder::SrgbEncoder() {
+    const auto code_of_bits = [](std::uint32_t bits) { return int{srgb_code(double{std::bit_cast<float>(bits)})}; };
+    const auto up_to_one = std::views::iota(0u, std::bit_cast<std::uint32_t>(1.0f) + 1);
+    least_.fill(std::numeric_limits<float>::infinity());
+    for (int code = 0; code < 256; ++code)
+        least_[static_cast<std::size_t>(code)] =
+            std::bit_cast<float>(*std::ranges::lower_bound(up_to_one, code, {}, code_of_bits));
+    std::uint8_t code = 0;
+    for (std::uint32_t i = 0; i < intervals; ++i) {
+        while (std::bit_cast<float>(i << interval_bits) >= least_[code + 1u]) ++code;
+        first_[i] = code;
+    }
+}
+
 namespace {
 
 std::vector<std::uint8_t> encode(const Image& image, double exposure) {
+    const SrgbEncoder srgb;
     const double scale = std::exp2(exposure);
-    std::vector<std::uint8_t> rgb;
-    rgb.reserve(image.rgba.size() / 4 * 3);
-    for (std::size_t i = 0; i < image.rgba.size(); i += 4)
-        for (std::size_t channel = 0; channel < 3; ++channel) rgb.push_back(srgb_code(scale * image.rgba[i + channel]));
+    std::vector<std::uint8_t> rgb(image.rgba.size() / 4 * 3);
+    for (std::size_t i = 0; i < rgb.size(); ++i)
+        rgb[i] = srgb.code(static_cast<float>(scale * image.rgba[i / 3 * 4 + i % 3]));
     return rgb;
 }
 
@@ -43,6 +60,7 @@ void write_rgb(const std::string& file, const std::string& temporary, const Imag
     png.width = static_cast<png_uint_32>(image.width);
     png.height = static_cast<png_uint_32>(image.height);
     png.format = PNG_FORMAT_RGB;
+    png.flags = PNG_IMAGE_FLAG_FAST;  // five times as fast, and pictures a fifth larger
     errno = 0;  // libpng says that a write failed, the system why
     if (png_image_write_to_stdio(&png, stream.get(), 0, rgb.data(), 0, nullptr) == 0)
         throw errno != 0 ? write_error(file, errno) : write_error(file, png.message);

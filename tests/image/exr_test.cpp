@@ -208,6 +208,19 @@ TEST(write_exr, files_of_two_runs_differ_in_the_render_time_alone) {
     EXPECT_EQ(a, b);
 }
 
+TEST(write_exr, writes_the_same_file_by_any_number_of_threads) {
+    const TemporaryFolder folder;
+    Image image{37, 101, {}};  // blocks of sixteen lines, the last one shorter
+    for (int i = 0; i < 4 * 37 * 101; ++i) image.rgba.push_back(std::sin(0.1f * static_cast<float>(i)));
+    std::vector<std::string> files;
+    for (const unsigned threads : {1u, 2u, 7u, 0u}) {
+        write_exr(folder.file("a.exr"), image, {}, metadata_of(image), ExrPixels::float32, threads);
+        files.push_back(read_bytes(folder.file("a.exr")));
+    }
+    EXPECT_EQ(read_pixels(folder.file("a.exr")), image.rgba);
+    for (const std::string& file : files) EXPECT_TRUE(file == files.front());
+}
+
 TEST(write_exr, leaves_nothing_beside_the_file) {
     const TemporaryFolder folder;
     const Image image{1, 1, {1, 2, 3, 4}};

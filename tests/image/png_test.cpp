@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -58,6 +59,21 @@ TEST(srgb_code, clamps_and_turns_nan_black) {
     EXPECT_EQ(srgb_code(1 + 1e-7), 255);
     EXPECT_EQ(srgb_code(infinity), 255);
     EXPECT_EQ(srgb_code(nan), 0);
+}
+
+TEST(SrgbEncoder, agrees_where_codes_change_and_everywhere_between) {
+    const SrgbEncoder srgb;
+    const auto expect_alike = [&](float linear) { EXPECT_EQ(srgb.code(linear), srgb_code(linear)) << linear; };
+    for (int code = 0; code < 255; ++code) {
+        auto least = static_cast<float>(linear_of(code + 0.5));
+        for (int step = 0; step < 4; ++step) least = std::nextafter(least, 0.0f);
+        for (int step = 0; step < 8; ++step, least = std::nextafter(least, 2.0f)) expect_alike(least);
+    }
+    for (std::uint32_t bits = 0; bits < std::bit_cast<std::uint32_t>(2.0f); bits += 4099)
+        expect_alike(std::bit_cast<float>(bits));
+    for (const float linear : {0.0f, -0.0f, -1.0f, 1.0f, infinity, -infinity, nan}) expect_alike(linear);
+    expect_alike(std::nextafter(1.0f, 0.0f));
+    expect_alike(std::numeric_limits<float>::denorm_min());
 }
 
 TEST(write_png, a_decoder_sees_the_pixels_in_order_and_opaque) {
