@@ -210,7 +210,7 @@ void DeviceArguments::add_pipelines_to(CLI::App& command) {
 
 void DeviceArguments::add_without_memory_to(CLI::App& command) {
     add_what_never_varies_to(command);
-    threads_flag.add_to(command, threads, "Compute units to use; all by default");
+    threads_flag.add_to(command, threads, "Compute units to use, and threads that build and write; all by default");
     queue_capacity_flag.add_to(command, queue_capacity,
                                "Rays of a batch, as in 16k; k is 1024, M 1024 k; the image does not depend on it");
     work_group_flag.add_to(

@@ -21,10 +21,12 @@
 #include <fmt/format.h>
 #include <sys/types.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <exception>
 #include <limits>
 #include <thread>
 #include <utility>
@@ -120,8 +122,29 @@ void add_channels(const ImageLayer& layer, const void* memory, Imf::PixelType ty
     }
 }
 
+/// Sets the number of threads by which OpenEXR compresses, for as long as this lives.
+class Compressors {
+  public:
+    Compressors(unsigned threads, int height) : before_(Imf::globalThreadCount()) {
+        const unsigned blocks = (static_cast<unsigned>(height) + lines_a_block - 1) / lines_a_block;
+        const unsigned useful = std::min(threads, blocks);
+        try {
+            Imf::setGlobalThreadCount(useful > 1 ? static_cast<int>(useful) : 0);  // 0: the caller compresses
+        } catch (const std::exception&) {  // where the system gives no threads
+            Imf::setGlobalThreadCount(0);
+        }
+    }
+    ~Compressors() { Imf::setGlobalThreadCount(before_); }
+    Compressors(const Compressors&) = delete;
+    Compressors& operator=(const Compressors&) = delete;
+
+  private:
+    static constexpr unsigned lines_a_block = 16;  // of ZIP_COMPRESSION
+    int before_;
+};
+
 void write_layers(const std::string& file, const std::string& temporary, Imf::Header header,
-                  const std::vector<const ImageLayer*>& layers, ExrPixels pixels, int threads) {
+                  const std::vector<const ImageLayer*>& layers, ExrPixels pixels) {
     Imf::FrameBuffer frame_buffer;
     std::vector<std::vector<Imath::half>> halves;
     for (const ImageLayer* layer : layers) {
@@ -137,7 +160,7 @@ void write_layers(const std::string& file, const std::string& temporary, Imf::He
 
     FileStream stream(temporary, file);
     try {
-        Imf::OutputFile output(stream, header, threads);
+        Imf::OutputFile output(stream, header);
         output.setFrameBuffer(frame_buffer);
         output.writePixels(header.dataWindow().size().y + 1);
     } catch (const Iex::BaseExc& error) {
@@ -156,10 +179,8 @@ void write_exr(const std::string& file, const Image& image, const std::vector<Im
     std::vector<const ImageLayer*> all = {&beauty};
     for (const ImageLayer& layer : layers) all.push_back(&layer);
     const Imf::Header header = make_header(image, metadata);
-    const int workers = static_cast<int>(threads > 0 ? threads : std::thread::hardware_concurrency());
-    Imf::setGlobalThreadCount(workers);
-    write_atomically(
-        file, [&](const std::string& temporary) { write_layers(file, temporary, header, all, pixels, workers); });
+    const Compressors compressors(threads > 0 ? threads : std::thread::hardware_concurrency(), image.height);
+    write_atomically(file, [&](const std::string& temporary) { write_layers(file, temporary, header, all, pixels); });
 }
 
 }  // namespace raymill

@@ -50,7 +50,8 @@ enum class ImageFormat { exr, png };
 ImageFormat image_format(const std::string& file);
 
 /// Channels R G B A and those of the layers, ZIP compression by so many threads, 0 for all; the file does not depend on
-/// their number. Atomic as write_atomically is. Throws OutputError.
+/// their number. Not at the same time as anything else of OpenEXR, which has one pool of threads. Atomic as
+/// write_atomically is. Throws OutputError.
 void write_exr(const std::string& file, const Image& image, const std::vector<ImageLayer>& layers,
                const ImageMetadata& metadata, ExrPixels pixels, unsigned threads = 0);
 

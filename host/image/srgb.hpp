@@ -11,7 +11,7 @@ namespace raymill {
 /// The code in [0, 255] nearest to the sRGB encoding of a linear value, clamped to [0, 1]; NaN gives 0.
 std::uint8_t srgb_code(double linear);
 
-/// The same for many values, by a table instead of a power each.
+/// The same for many values, of floats, by a table instead of a power each.
 class SrgbEncoder {
   public:
     SrgbEncoder();
@@ -24,11 +24,11 @@ class SrgbEncoder {
     }
 
   private:
-    // Floats whose upper bits are equal: so few that at most two codes are among them.
+    // An interval is the floats whose upper bits are equal: so few that at most two codes are among them.
     static constexpr int interval_bits = 16;
     static constexpr std::size_t intervals = std::bit_cast<std::uint32_t>(1.0f) >> interval_bits;
 
-    std::array<float, 257> least_;                 // float of each code; infinite after the last
+    std::array<float, 257> least_;                 // the least float of each code; infinite after the last
     std::array<std::uint8_t, intervals> first_{};  // code of the least float of each interval
 };
 

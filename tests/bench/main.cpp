@@ -56,7 +56,10 @@ void add_options(CLI::App& app, Arguments& a) {
     app.add_option("--look-at", a.look_at, "What it looks at: x y z")->expected(3);
     app.add_option("--fov", a.fov, "Vertical field of view in degrees")->check(CLI::Range(1.0, 170.0));
     app.add_option("--size", a.size, "Camera rays, WIDTHxHEIGHT, rounded up to tiles of 8 (default 1024x768)");
-    app.add_option("--rays", a.measure.sets, "Sets of rays, as in S,A; all of them without this")
+    app.add_option(
+           "--rays", a.measure.sets,
+           "Sets of rays, as in S,A: P camera, S to a point light, A to an area light, R mirrored, T through glass, "
+           "D diffuse; all of them without this")
         ->delimiter(',')
         ->check(CLI::IsMember({"P", "S", "A", "R", "T", "D"}));
     app.add_option("--rounds", a.measure.rounds, "Times that each variant runs (11 and more for medians)")

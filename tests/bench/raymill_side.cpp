@@ -77,7 +77,7 @@ RaymillKernels::RaymillKernels(const std::string& device, unsigned threads, cons
                                const std::vector<std::string>& folders)
     : device_(open_device(device, threads)) {
     for (const Traversal traversal : traversals) {
-        add(traversal, RAYMILL_KERNELS, name_of(traversal));
+        add(traversal, "", name_of(traversal));
         for (const std::string& folder : folders) add(traversal, folder, name_of(traversal) + " " + folder);
     }
 }
@@ -85,8 +85,9 @@ RaymillKernels::RaymillKernels(const std::string& device, unsigned threads, cons
 void RaymillKernels::add(Traversal traversal, const std::string& folder, const std::string& name) {
     const bool packets =
         traversal == Traversal::packet || (traversal == Traversal::automatic && device_.info.type == "CPU");
-    const std::string file = std::filesystem::relative(RAYMILL_KERNELS "/../tests/bench/traversal.cl", folder);
-    const cl::Program program = build_program(device_, {file}, folder, packets ? "-DRAYMILL_PACKETS" : "");
+    const std::string library = folder.empty() ? RAYMILL_KERNELS : folder;
+    const std::string file = std::filesystem::relative(RAYMILL_KERNELS "/../tests/bench/traversal.cl", library);
+    const cl::Program program = build_program(device_, {file}, library, packets ? "-DRAYMILL_PACKETS" : "");
     kinds_.push_back({name, std::make_unique<Stages>(device_, 0, folder, traversal), make_kernel(program, "closest"),
                       make_kernel(program, "occlusion"), packets ? std::size_t{CHUNK} : 1});
 }

@@ -45,6 +45,7 @@ class RaymillKernels {
     const std::vector<Kind>& kinds() const { return kinds_; }
 
   private:
+    /// folder: of the kernels; empty for the project's.
     void add(Traversal traversal, const std::string& folder, const std::string& name);
 
     Device device_;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -65,7 +66,7 @@ Json json_of(const ScalingTable& table) {
                         {"nanoseconds", row.nanoseconds},
                         {table.factor, row.factor},
                         {"keeps_limit", table.keeps_limit(row)}});
-        if (row.embree) rows.back()["embree"] = *row.embree;
+        if (row.embree_factor) rows.back()["embree_" + table.factor] = *row.embree_factor;
     }
     return {{"title", table.title}, {"columns", table.columns}, {"limit", table.limit}, {"rows", rows}};
 }
@@ -95,8 +96,10 @@ void print_scene(const SceneResult& scene) {
     for (const SetResult& set : scene.sets) {
         fmt::print("  {}: {} {}, {:.1f} % {}\n", set.name, set.rays, set.description, 100 * set.hitting,
                    set.any_hit ? "blocked" : "hit");
+        std::size_t widest = 0;
+        for (const VariantResult& v : set.variants) widest = std::max(widest, v.name.size());
         for (const VariantResult& v : set.variants)
-            fmt::print("    {:<26} {:7.2f} Mrays/s {:<17}  ratio {:5.2f} {:<13}  differing {:.1e}{}\n", v.name,
+            fmt::print("    {:<{}} {:7.2f} Mrays/s {:<17}  ratio {:5.2f} {:<13}  differing {:.1e}{}\n", v.name, widest,
                        v.mrays.median, fmt::format("[{:.2f} {:.2f}]", v.mrays.lower, v.mrays.upper), v.ratio.median,
                        fmt::format("[{:.2f} {:.2f}]", v.ratio.lower, v.ratio.upper), v.differing,
                        v.name == set.best ? "  <- Embree's best" : "");
@@ -111,7 +114,8 @@ void print_scaling(const ScalingTable& table) {
     for (const ScalingRow& row : table.rows) {
         fmt::print("  {:<6}", row.name);
         for (const double time : row.nanoseconds) fmt::print("{:>10.1f}", time);
-        fmt::print("{:>10.2f}{}{}\n", row.factor, row.embree ? fmt::format("  (Embree {:.2f})", *row.embree) : "",
+        fmt::print("{:>10.2f}{}{}\n", row.factor,
+                   row.embree_factor ? fmt::format("  (Embree {:.2f})", *row.embree_factor) : "",
                    table.keeps_limit(row) ? "" : "  <-");
     }
 }

@@ -35,13 +35,15 @@ struct Work {
     double rays = 1;
 };
 
-/// Median nanoseconds a ray, in rounds in which each work runs once; once before them.
+/// Median nanoseconds a ray, in rounds in which each work runs twice; the second time counts, when the caches hold what
+/// the first left there.
 std::vector<double> time_in_turn(const std::vector<Work>& works, int rounds, Clock clock) {
     std::vector<std::vector<double>> times(works.size());
-    for (const Work& work : works) work.run();
     for (int round = 0; round < rounds; ++round)
-        for (std::size_t i = 0; i < works.size(); ++i)
+        for (std::size_t i = 0; i < works.size(); ++i) {
+            works[i].run();
             times[i].push_back(1e9 * seconds_of(works[i].run, clock) / works[i].rays);
+        }
     std::vector<double> medians;
     for (const auto& of_work : times) medians.push_back(quartiles(of_work).median);
     return medians;
@@ -56,20 +58,19 @@ Work trace_of(RaymillSide& side, const RaySet& set) {
     return {side.variants(set).front().trace, static_cast<double>(set.rays.size())};
 }
 
-/// Embree with a hierarchy over a scene.
+/// Embree with hierarchies over a scene.
 struct Peer : EmbreeSide {
     Peer(const BenchScene& bench, const MeasureOptions& options)
         : EmbreeSide(bench.scene, options.threads, options.robust) {
-        build(Quality::medium);
+        for (const Quality quality : options.qualities) build(quality);
     }
 };
 
-/// Median nanoseconds a ray of Embree's fastest call.
-double time_best(const EmbreeSide& embree, const RaySet& set, const MeasureOptions& options) {
+std::vector<Work> traces_of(const EmbreeSide& embree, const RaySet& set) {
     std::vector<Work> works;
     for (const Variant& variant : embree.variants(set))
         works.push_back({variant.trace, static_cast<double>(set.rays.size())});
-    return std::ranges::min(time_in_turn(works, options.rounds, options.clock));
+    return works;
 }
 
 /// A made scene, ready to be traced.
@@ -108,10 +109,17 @@ ScalingTable by_scene(const Recipe& recipe, const ScalingOptions& options) {
         for (const auto& scene : scenes)
             if (const RaySet* same = scene->set(set.name)) works.push_back(trace_of(*scene->side, *same));
         if (works.size() < scenes.size()) continue;
-        ScalingRow row{set.name, time_in_turn(works, options.measure.rounds, options.measure.clock), 1};
+        const std::size_t ours = works.size();
+        for (const PreparedScene* scene : {scenes.front().get(), scenes.back().get()})
+            for (Work& work : traces_of(scene->peer, *scene->set(set.name))) works.push_back(std::move(work));
+        const std::vector<double> times = time_in_turn(works, options.measure.rounds, options.measure.clock);
+        const std::size_t calls = (times.size() - ours) / 2;
+        const auto fastest = [&](std::size_t first) {
+            return std::ranges::min(std::span(times).subspan(first, calls));
+        };
+        ScalingRow row{set.name, {times.begin(), times.begin() + static_cast<std::ptrdiff_t>(ours)}, 1};
         row.factor = row.nanoseconds.back() / row.nanoseconds.front();
-        row.embree = time_best(scenes.back()->peer, *scenes.back()->set(set.name), options.measure) /
-                     time_best(scenes.front()->peer, set, options.measure);
+        row.embree_factor = fastest(ours + calls) / fastest(ours);
         table.rows.push_back(row);
     }
     return table;

@@ -15,7 +15,7 @@ struct ScalingRow {
     std::string name;
     std::vector<double> nanoseconds;  // a ray, medians, by column
     double factor = 1;
-    std::optional<double> embree{};  // the same factor of Embree's fastest calls, where measured
+    std::optional<double> embree_factor{};  // the same of Embree's fastest calls, where measured
 };
 
 /// One question: its rows are measured alike, and their factors are to keep a limit.

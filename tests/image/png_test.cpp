@@ -108,6 +108,8 @@ TEST(write_png, an_exposure_beyond_all_numbers_gives_white_and_black) {
     const TemporaryFolder folder;
     write_png(folder.file("a.png"), Image{1, 1, {1e-30f, 0, -1, 1}}, 1e6);
     EXPECT_EQ(decode(folder.file("a.png")).rgba, (std::vector<std::uint8_t>{255, 0, 0, 255}));
+    write_png(folder.file("b.png"), Image{1, 1, {1e10f, -1e10f, nan, 1}}, 100);  // beyond floats, not beyond doubles
+    EXPECT_EQ(decode(folder.file("b.png")).rgba, (std::vector<std::uint8_t>{255, 0, 0, 255}));
 }
 
 TEST(write_png, declares_srgb) {
